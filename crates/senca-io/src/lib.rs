@@ -1,0 +1,1 @@
+//! Readers and writers of scenes, meshes and pictures.

@@ -1,0 +1,1 @@
+//! The standard rendering pipeline over a scene.

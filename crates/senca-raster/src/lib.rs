@@ -1,0 +1,1 @@
+//! Tiled and scan-line rasterizers.

@@ -1,0 +1,1 @@
+//! Scene, meshes, shapes, materials, lights, cameras, animation.

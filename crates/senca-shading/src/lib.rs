@@ -1,0 +1,1 @@
+//! Reflection models, lights and fog.

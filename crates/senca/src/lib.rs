@@ -1,0 +1,1 @@
+//! A 3-D rendering system that needs no GPU: library and command.

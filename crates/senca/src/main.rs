@@ -1,0 +1,2 @@
+//! The `senca` command.
+fn main() {}
