@@ -1,1 +1,14 @@
 //! Readers and writers of scenes, meshes and pictures.
+//!
+//! Every reader takes the file's bytes and a [`Files`] that fetches the files it names, and gives a
+//! [`Scene`](senca_scene::Scene) or one [`ReadError`] that says where and what; none panics, hangs or
+//! takes memory out of proportion to its input. Every writer fills a buffer; [`write_file`] puts it
+//! in place at once or not at all.
+
+mod error;
+mod files;
+mod output;
+
+pub use error::{Location, ReadError, WriteError};
+pub use files::{Directory, Files, Limits, NoFiles};
+pub use output::write_file;
