@@ -101,6 +101,13 @@ impl Directory {
 impl Files for Directory {
     fn read(&self, uri: &str) -> Result<Vec<u8>, ReadError> {
         let path = self.resolve(uri)?;
+        // Asked before it is opened: opening a pipe would wait for its writer.
+        let is_file = std::fs::metadata(&path)
+            .map_err(|source| ReadError::Io { path: path.clone(), source })?
+            .is_file();
+        if !is_file {
+            return Err(ReadError::malformed(Location::file(uri), "is not a regular file"));
+        }
         read_limited(&path, self.limits)
     }
 
@@ -109,7 +116,7 @@ impl Files for Directory {
     }
 }
 
-/// Content of `path`, as long as it keeps to the limits; folders and devices are refused.
+/// Content of `path`, as long as it keeps to the limits.
 pub(crate) fn read_limited(path: &Path, limits: Limits) -> Result<Vec<u8>, ReadError> {
     let io = |source| ReadError::Io { path: path.to_owned(), source };
     let file = File::open(path).map_err(io)?;
