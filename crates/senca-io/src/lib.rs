@@ -9,6 +9,7 @@ mod error;
 mod files;
 pub mod images;
 mod output;
+pub mod toml_scene;
 
 pub use error::{Location, ReadError, WriteError};
 pub use files::{Directory, Files, Limits, NoFiles};
