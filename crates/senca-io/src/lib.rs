@@ -7,7 +7,11 @@
 
 mod error;
 mod files;
+mod mtl;
+pub mod obj;
 mod output;
+mod text;
+mod weld;
 
 pub use error::{Location, ReadError, WriteError};
 pub use files::{Directory, Files, Limits, NoFiles};
