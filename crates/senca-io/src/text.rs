@@ -63,11 +63,6 @@ impl<'a> Cursor<'a> {
         &self.bytes[self.pos.min(self.bytes.len())..]
     }
 
-    /// The bytes from `start` to here.
-    pub(crate) fn since(&self, start: usize) -> &'a [u8] {
-        &self.bytes[start..self.pos]
-    }
-
     /// Skips blanks, and line ends behind a backslash where those join lines.
     #[inline]
     pub(crate) fn skip_blanks(&mut self) {

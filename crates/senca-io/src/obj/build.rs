@@ -10,6 +10,7 @@ use senca_scene::{
 };
 
 use super::parse::{Corner, NONE, Run, Smoothing, Soup, SurfaceKey};
+use crate::normals::{fill_missing_normals, unit};
 use crate::{Files, ReadError};
 
 /// Vertices of one point that are looked through one by one; further ones are hashed.
@@ -17,7 +18,7 @@ const CHAIN: u32 = 32;
 
 /// Makes the scene.
 pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Scene, ReadError> {
-    let mut scene = Scene { name: stem(name), ..Scene::default() };
+    let mut scene = Scene { name: crate::stem(name), ..Scene::default() };
     scene.warnings = std::mem::take(&mut soup.warnings).into_iter().map(Warning).collect();
     let materials = materials(&mut scene, &soup, files)?;
     finish_colors(&mut soup.colors);
@@ -37,13 +38,6 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
         scene.roots.push(node);
     }
     Ok(scene)
-}
-
-/// File name without folder and extension.
-fn stem(name: &str) -> String {
-    std::path::Path::new(name)
-        .file_stem()
-        .map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 fn surface(key: &SurfaceKey, material: Option<MaterialId>) -> Surface {
@@ -334,42 +328,4 @@ impl Unifier {
         vertices.point = corners.iter().map(|c| c.point).collect();
         vertices
     }
-}
-
-/// The direction of `v`, even where its length squared overflows or vanishes in `f32`.
-fn unit(v: Vec3) -> Option<Vec3> {
-    v.as_dvec3().try_normalize().map(|v| v.as_vec3())
-}
-
-/// Gives vertices whose normal is NaN the mean normal of their faces, weighted by area. Where no
-/// vertex has a normal, the attribute is dropped.
-fn fill_missing_normals(mesh: &mut Mesh) {
-    let missing = mesh.vertices.normal.iter().filter(|n| n.is_nan()).count();
-    if missing == 0 {
-        return;
-    }
-    if missing == mesh.vertices.normal.len() {
-        mesh.vertices.normal.clear();
-        return;
-    }
-    let mut sums = vec![senca_scene::math::glam::DVec3::ZERO; mesh.vertices.normal.len()];
-    for face in mesh.faces.iter() {
-        let area = newell(mesh, face);
-        face.iter().for_each(|&vertex| sums[vertex as usize] += area);
-    }
-    for (normal, sum) in mesh.vertices.normal.iter_mut().zip(sums) {
-        if normal.is_nan() {
-            *normal = sum.try_normalize().map_or(Vec3::Z, |n| n.as_vec3());
-        }
-    }
-}
-
-/// Normal of a polygon, twice its area long (Newell's method: Sutherland, Sproull and Schumacker
-/// 1974, appendix).
-fn newell(mesh: &Mesh, face: &[u32]) -> senca_scene::math::glam::DVec3 {
-    let origin = mesh.position(face[0]).as_dvec3();
-    let edges = face.windows(2).skip(1);
-    edges
-        .map(|w| (mesh.position(w[0]).as_dvec3() - origin).cross(mesh.position(w[1]).as_dvec3() - origin))
-        .sum()
 }

@@ -58,7 +58,7 @@ proptest! {
     }
 
     #[test]
-    fn any_decimal_rounds_once(digits in "[0-9]{1,12}\\.[0-9]{0,12}", exponent in -30i32..30) {
+    fn any_decimal_rounds_once(digits in "[0-9]{1,12}\\.[0-9]{0,12}", exponent in -30i32..26) {
         let text = format!("{digits}e{exponent}");
         prop_assert_eq!(f32_of(&text).expect("a float").to_bits(), text.parse::<f32>().expect("a float").to_bits());
     }
