@@ -7,6 +7,7 @@
 
 mod error;
 mod files;
+pub mod images;
 mod mtl;
 mod normals;
 pub mod obj;
