@@ -1,15 +1,17 @@
 //! Cameras: by eye and target, or by the viewing operations of the course text.
 
 use senca_math::glam::DVec3;
+use senca_math::view::{
+    CentralByNormal, Normalization1991, ParallelByNormal, View1991, ViewError, ViewParameters, ViewWindow,
+    ViewingOperation,
+};
 use senca_scene::{Camera, CameraId, Node, Projection, Transform};
 
 use super::builder::{Builder, Part};
 use super::source::{Result, Table};
-use super::transforms::{TRANSFORM_KEYS, frame_towards, read_frame, read_transform, rigid};
+use super::transforms::{TRANSFORM_KEYS, read_frame, read_transform};
 use super::values::Value;
-
-/// How far the length of the normal of operation A may be from 1; enough for four typed digits.
-const UNIT_TOLERANCE: f64 = 1e-3;
+use crate::ReadError;
 
 /// The viewing operations.
 #[derive(Clone, Copy)]
@@ -17,14 +19,18 @@ enum Operation {
     A,
     B,
     C,
-    ParallelByNormal,
+    P,
+    In1991(Normalization1991),
 }
 
-const OPERATIONS: [(&str, Operation); 4] = [
+const OPERATIONS: [(&str, Operation); 7] = [
     ("A", Operation::A),
     ("B", Operation::B),
     ("C", Operation::C),
-    ("parallel", Operation::ParallelByNormal),
+    ("P", Operation::P),
+    ("1991-perspective", Operation::In1991(Normalization1991::Perspective)),
+    ("1991-parallel", Operation::In1991(Normalization1991::Parallel)),
+    ("1991-gks", Operation::In1991(Normalization1991::ParallelGks)),
 ];
 
 impl<'a> Builder<'a> {
@@ -114,114 +120,111 @@ fn planes<'a>(
     Ok((near, far))
 }
 
-fn viewing_operation(table: &mut Table<'_>, operation: Operation) -> Result<(Projection, Transform)> {
-    match operation {
-        Operation::A => central_by_normal(table),
-        Operation::B => general(table, false),
-        Operation::C => general(table, true),
-        Operation::ParallelByNormal => parallel_by_normal(table),
+/// One of the viewing operations; its world is the camera's node, which can be placed on top.
+fn viewing_operation(table: &mut Table<'_>, kind: Operation) -> Result<(Projection, Transform)> {
+    let (operation, checked) = match kind {
+        Operation::A => central_by_normal(table)?,
+        Operation::P => parallel_by_normal(table)?,
+        _ => {
+            let parameters = parameters(table)?;
+            let operation = match kind {
+                Operation::B => ViewingOperation::Central(parameters),
+                Operation::C => ViewingOperation::Parallel(parameters),
+                Operation::In1991(normalization) => {
+                    ViewingOperation::View1991(View1991 { parameters, normalization })
+                }
+                Operation::A | Operation::P => return Err(table.error("an operation by normal has no VRP")),
+            };
+            (operation, operation.view().map(drop))
+        }
+    };
+    checked.map_err(|error| view_error(table, error))?;
+    let transform = read_transform(table)?.unwrap_or_default();
+    Ok((Projection::Operation(operation), transform))
+}
+
+/// The error of a view at the key that it is about.
+fn view_error(table: &mut Table<'_>, error: ViewError) -> ReadError {
+    let key = match error {
+        ViewError::ZeroVpn => "vpn",
+        ViewError::ZeroVup | ViewError::VupParallelToVpn => "vup",
+        ViewError::NormalNotUnit { .. } => "n",
+        ViewError::ZeroFocal => "f",
+        ViewError::EmptyWindow { .. } => "window",
+        ViewError::PrpInViewPlane => "prp",
+        ViewError::FrontEqualsBack(_) | ViewError::BackBeforeFront { .. } | ViewError::BackThroughPrp(_) => {
+            "back"
+        }
+        ViewError::PlaneBehindEye { plane, .. } => plane,
+        _ => "operation",
+    };
+    match table.get(key) {
+        Some(value) => value.error(error.to_string()),
+        None => table.error(error.to_string()),
     }
 }
 
 /// umin, umax, vmin, vmax.
-fn window(table: &mut Table<'_>) -> Result<[f64; 4]> {
-    let value = table.require("window")?;
-    let window: [f64; 4] = value.array("four numbers: umin, umax, vmin, vmax", Value::number)?;
-    let [umin, umax, vmin, vmax] = window;
-    if umin < umax && vmin < vmax {
-        return Ok(window);
-    }
-    Err(value.refuse(format_args!(
-        "is empty: umin {umin} must be below umax {umax}, and vmin {vmin} below vmax {vmax}"
-    )))
+fn window(value: Value<'_>) -> Result<ViewWindow> {
+    let [umin, umax, vmin, vmax] = value.array("four numbers: umin, umax, vmin, vmax", Value::number)?;
+    Ok(ViewWindow::new(umin, umax, vmin, vmax))
 }
 
-/// F and B with F > B, where F defaults to `default_front`.
-fn front_and_back(table: &mut Table<'_>, default_front: Option<f64>) -> Result<(f64, f64)> {
-    let front = match default_front {
-        Some(default) => table.read_or("front", default, Value::number)?,
-        None => table.require("front")?.number()?,
+/// VRP, VPN, VUP, PRP, window, F and B.
+fn parameters(table: &mut Table<'_>) -> Result<ViewParameters> {
+    Ok(ViewParameters {
+        vrp: table.read_or("vrp", DVec3::ZERO, Value::vec3)?,
+        vpn: table.read_or("vpn", DVec3::Z, Value::vec3)?,
+        vup: table.read_or("vup", DVec3::Y, Value::vec3)?,
+        prp: table.require("prp")?.vec3()?,
+        window: window(table.require("window")?)?,
+        front: table.require("front")?.number()?,
+        back: table.require("back")?.number()?,
+    })
+}
+
+/// The operation, and whether it gives a view.
+type Checked = (ViewingOperation, std::result::Result<(), ViewError>);
+
+/// Window, front and back of an operation by normal, which are given all or not at all.
+fn bounds(table: &mut Table<'_>) -> Result<Option<(ViewWindow, f64, f64)>> {
+    if table.first_of(&["window", "front", "back"]).is_none() {
+        table.know(&["window", "front", "back"]);
+        return Ok(None);
+    }
+    let window = window(table.require("window")?)?;
+    let front = table.require("front")?.number()?;
+    Ok(Some((window, front, table.require("back")?.number()?)))
+}
+
+/// Operation A: centre `p`, unit normal `n`, distance `f`. With a window and planes it is B.
+fn central_by_normal(table: &mut Table<'_>) -> Result<Checked> {
+    let a = CentralByNormal {
+        center: table.require("p")?.vec3()?,
+        normal: table.require("n")?.vec3()?,
+        focal: table.require("f")?.number()?,
     };
-    let value = table.require("back")?;
-    let back = value.number()?;
-    if back < front {
-        return Ok((front, back));
-    }
-    Err(value.refuse(format_args!(
-        "must be smaller than \"front\", {front}, but is {back}: both count along the normal, towards the viewer"
-    )))
+    let operation = ViewingOperation::CentralByNormal(a);
+    Ok(match bounds(table)? {
+        None => (operation, a.steps().map(drop)),
+        Some((window, front, back)) => match a.parameters(window, front, back) {
+            Ok(b) => (ViewingOperation::Central(b), b.central_view().map(drop)),
+            Err(error) => (operation, Err(error)),
+        },
+    })
 }
 
-/// Refuses a front plane that does not lie before the eye at `eye` on the normal.
-fn check_before_eye(table: &mut Table<'_>, front: f64, eye: f64) -> Result<()> {
-    if front < eye {
-        return Ok(());
-    }
-    let message = format!(
-        "the front plane at {front} does not lie before the eye; \"front\" must be smaller than {eye}, \
-         the eye's distance from the view plane"
-    );
-    Err(table.get("front").map_or_else(|| table.error(message.clone()), |value| value.error(message.clone())))
-}
-
-/// Operations B and C: VRP, VPN, VUP, PRP, window, F, B.
-fn general(table: &mut Table<'_>, parallel: bool) -> Result<(Projection, Transform)> {
-    let vrp = table.read_or("vrp", DVec3::ZERO, Value::vec3)?;
-    let vpn = table.read_or("vpn", DVec3::Z, Value::direction)?;
-    let vup_value = table.get("vup");
-    let vup = vup_value.map(Value::direction).transpose()?.unwrap_or(DVec3::Y);
-    let rotation = frame_towards(-vpn, vup).ok_or_else(|| {
-        let message = "VUP is parallel to VPN, the direction of view; give an up vector across it";
-        vup_value.map_or_else(|| table.error(message), |value| value.error(message))
-    })?;
-    let prp_value = table.require("prp")?;
-    let prp = prp_value.vec3()?;
-    if prp.z == 0.0 {
-        return Err(prp_value.refuse("lies in the view plane; its third coordinate must not be 0"));
-    }
-    let window = window(table)?;
-    let (front, back) = front_and_back(table, None)?;
-    if !parallel {
-        check_before_eye(table, front, prp.z)?;
-    } else if back == prp.z {
-        return Err(prp_value.refuse("lies in the back plane; move it along the direction of projection"));
-    }
-    Ok((Projection::ViewReference { parallel, prp, window, front, back }, rigid(rotation, vrp)))
-}
-
-/// The unit normal `n` and the frame it stands for: x across n and the world's z axis.
-fn normal_frame(table: &mut Table<'_>) -> Result<(DVec3, senca_math::glam::DQuat)> {
-    let value = table.require("n")?;
-    let given = value.vec3()?;
-    let length = given.length();
-    if (length - 1.0).abs() > UNIT_TOLERANCE {
-        return Err(value.refuse(format_args!("must have length 1, but its length is {length}")));
-    }
-    let n = given / length;
-    let rotation = frame_towards(-n, DVec3::Z).or_else(|| frame_towards(-n, DVec3::Y));
-    Ok((n, rotation.unwrap_or_default()))
-}
-
-/// Operation A: centre `p`, unit normal `n`, distance `f`.
-fn central_by_normal(table: &mut Table<'_>) -> Result<(Projection, Transform)> {
-    let p = table.require("p")?.vec3()?;
-    let (n, rotation) = normal_frame(table)?;
-    let f = table.require("f")?.positive()?;
-    let window = window(table)?;
-    let (front, back) = front_and_back(table, Some(0.0))?;
-    check_before_eye(table, front, f)?;
-    let prp = DVec3::new(0.0, 0.0, f);
-    Ok((Projection::ViewReference { parallel: false, prp, window, front, back }, rigid(rotation, p - f * n)))
-}
-
-/// Parallel projection by a point `p` of the image plane and its unit normal `n`.
-fn parallel_by_normal(table: &mut Table<'_>) -> Result<(Projection, Transform)> {
-    let p = table.require("p")?.vec3()?;
-    let (_, rotation) = normal_frame(table)?;
-    let window = window(table)?;
-    let (front, back) = front_and_back(table, None)?;
-    // Any place on the normal through the window's centre gives the same direction.
-    let center = [0.5 * (window[0] + window[1]), 0.5 * (window[2] + window[3])];
-    let prp = DVec3::new(center[0], center[1], 1.0 + front.abs().max(back.abs()));
-    Ok((Projection::ViewReference { parallel: true, prp, window, front, back }, rigid(rotation, p)))
+/// Parallel projection by a point `p` of the image plane and its unit normal `n`. With a window and
+/// planes it is C.
+fn parallel_by_normal(table: &mut Table<'_>) -> Result<Checked> {
+    let by_normal =
+        ParallelByNormal { point: table.require("p")?.vec3()?, normal: table.require("n")?.vec3()? };
+    let operation = ViewingOperation::ParallelByNormal(by_normal);
+    Ok(match bounds(table)? {
+        None => (operation, by_normal.steps().map(drop)),
+        Some((window, front, back)) => match by_normal.parameters(window, front, back) {
+            Ok(c) => (ViewingOperation::Parallel(c), c.parallel_view().map(drop)),
+            Err(error) => (operation, Err(error)),
+        },
+    })
 }

@@ -208,14 +208,16 @@ fn cameras_say_what_they_need() {
         format!("[camera]\noperation = \"B\"\n{change}\n{}", keys.join("\n"))
     };
     assert!(super::read_text(&b("front = 2")).is_ok());
-    expect(&b("vup = [0,0,2]"), "scene.toml:3:7: VUP is parallel to VPN", &[]);
-    expect(&b("vpn = [0,0,0]"), "scene.toml:3:7:", &["must not be zero"]);
-    expect(&b("prp = [0,0,0]"), "scene.toml:3:7:", &["lies in the view plane"]);
-    expect(&b("window = [1,1,-1,1]"), "scene.toml:3:10:", &["is empty: umin 1 must be below umax 1"]);
+    expect(&b("vup = [0,0,2]"), "scene.toml:3:7: VUP, the up vector, is parallel to VPN", &[]);
+    expect(&b("vpn = [0,0,0]"), "scene.toml:3:7: VPN, the normal of the view plane, is zero", &[]);
+    expect(&b("prp = [0,0,0]"), "scene.toml:3:7: PRP lies in the view plane", &[]);
+    expect(&b("window = [1,1,-1,1]"), "scene.toml:3:10: the window is empty", &[]);
     expect(&b("front = 5"), "scene.toml:3:9: the front plane at 5 does not lie before the eye", &[]);
-    expect(&b("back = 1"), "scene.toml:3:8:", &["must be smaller than \"front\", 1, but is 1"]);
-    let a = "[camera]\noperation = \"A\"\np = [0,0,5]\nf = 2\nwindow = [-1,1,-1,1]\nback = -9\nn = ";
-    expect(&format!("{a}[0,0,2]"), "scene.toml:7:5:", &["must have length 1, but its length is 2"]);
+    expect(&b("back = 1"), "scene.toml:3:8: the front plane F and the back plane B are the same", &[]);
+    let a =
+        "[camera]\noperation = \"A\"\np = [0,0,5]\nf = 2\nwindow = [-1,1,-1,1]\nfront = 0\nback = -9\nn = ";
+    expect(&format!("{a}[0,0,2]"), "scene.toml:8:5:", &["must have length 1, but its length is 2"]);
+    assert!(super::read_text(&format!("{a}[0,0,1]")).is_ok());
 }
 
 #[test]
