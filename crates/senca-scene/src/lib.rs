@@ -6,9 +6,12 @@
 //! geometry (instances). Readers build scenes, renderers take `&Scene`.
 
 mod animation;
+mod bounds;
 mod camera;
+mod default_lights;
 mod faces;
 mod fog;
+mod framing;
 mod ids;
 mod light;
 mod material;
@@ -17,6 +20,7 @@ mod mesh;
 mod mesh_check;
 mod node;
 mod normals;
+mod patch_converter;
 mod scene;
 mod shape;
 mod tessellate;
@@ -27,8 +31,10 @@ mod topology;
 
 pub use animation::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation};
 pub use camera::{Camera, Projection};
+pub use default_lights::{DefaultLights, default_lights};
 pub use faces::{is_flat_quad, split_quad};
 pub use fog::{Fog, FogFalloff};
+pub use framing::{DEFAULT_YFOV, PlacedCamera, SceneCamera, frame_bounds};
 pub use ids::{AnimationId, CameraId, GeometryId, ImageId, LightId, MaterialId, NodeId, SkinId, TextureId};
 pub use light::{Attenuation, Light, LightKind, SpotFalloff};
 pub use material::{AlphaMode, Material, MetallicRoughness, Phong, Reflection};
@@ -39,6 +45,7 @@ pub use normals::{
     DegeneratePolygon, NormalSettings, NormalWeight, PolygonNormal, compute_normals, newell_vector,
     polygon_normal_1991, polygon_normals_1991,
 };
+pub use patch_converter::{PatchConversion, VertexSearch, patch_to_polygons};
 pub use scene::{Background, Geometry, Instance, Scene, SceneError, Warning};
 pub use senca_math as math;
 pub use shape::{BezierPatch, NurbsSurface, Shape};
