@@ -9,8 +9,16 @@ mod error;
 mod files;
 pub mod gltf;
 pub mod images;
+mod mtl;
+mod normals;
+pub mod obj;
 mod output;
+pub mod ply;
+pub mod stl;
+mod text;
+mod weld;
 
 pub use error::{Location, ReadError, WriteError};
+use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
 pub use output::write_file;
