@@ -400,7 +400,7 @@ impl Shaded {
     }
 }
 
-/// Draws primitives. `ScanlineRasterizer` is the plain form, `TiledRasterizer` the
+/// Draws primitives. [`crate::ScanlineRasterizer`] is the plain form, [`crate::TiledRasterizer`] the
 /// fast one; both cover the same pixels with the same depths.
 pub trait Rasterizer {
     /// Draws triangles, in order.

@@ -340,3 +340,168 @@ impl Sampler {
         Self { wrap_u: wrap, wrap_v: wrap, ..self }
     }
 }
+
+impl Sampler {
+    /// Colour at `uv`, where `derivatives` are `[[ux, vx], [uy, vy]]`, the change per pixel to the
+    /// right and downwards.
+    #[must_use]
+    pub fn sample(&self, texture: &Texture, uv: [f32; 2], derivatives: [[f32; 2]; 2]) -> [f32; 4] {
+        self.sample_lod(texture, uv, self.lod(texture, derivatives))
+    }
+
+    /// Level of detail, with the bias: the base-2 logarithm of how many texels of level 0 a pixel
+    /// spans along its longer side. At most the number of the last level.
+    #[must_use]
+    pub fn lod(&self, texture: &Texture, derivatives: [[f32; 2]; 2]) -> f32 {
+        let (w, h) = (texture.width() as f32, texture.height() as f32);
+        let square = |[du, dv]: [f32; 2]| (du * w) * (du * w) + (dv * h) * (dv * h);
+        let (x, y) = (square(derivatives[0]), square(derivatives[1]));
+        0.5 * log2(if x > y { x } else { y }) + self.lod_bias
+    }
+
+    /// Colour at `uv` with the level of detail given.
+    #[must_use]
+    pub fn sample_lod(&self, texture: &Texture, uv: [f32; 2], lod: f32) -> [f32; 4] {
+        let last = texture.levels.len() - 1;
+        if lod <= 0.0 || lod.is_nan() {
+            return self.read(&texture.levels[0], uv, self.magnify);
+        }
+        let lod = lod.min(last as f32);
+        match self.mip {
+            Mip::None => self.read(&texture.levels[0], uv, self.minify),
+            Mip::Nearest => self.read(&texture.levels[((lod + 0.5) as usize).min(last)], uv, self.minify),
+            Mip::Linear => {
+                let level = lod as usize;
+                let fine = self.read(&texture.levels[level], uv, self.minify);
+                let coarse = self.read(&texture.levels[(level + 1).min(last)], uv, self.minify);
+                lerp(fine, coarse, lod - level as f32)
+            }
+        }
+    }
+
+    /// Colour at `uv` of one level.
+    #[must_use]
+    pub fn read(&self, level: &TextureLevel, [u, v]: [f32; 2], filter: Filter) -> [f32; 4] {
+        let (x, y) = (self.position(u, level.width), self.position(v, level.height));
+        match filter {
+            Filter::Nearest => self.texel(level, whole(x + 0.5), whole(y + 0.5)),
+            Filter::Linear => self.bilinear(level, x, y),
+        }
+    }
+
+    fn position(&self, u: f32, n: u32) -> f32 {
+        let p = self.grid.position(u, n);
+        if p.is_finite() { p } else { 0.0 }
+    }
+
+    fn texel(&self, level: &TextureLevel, x: i64, y: i64) -> [f32; 4] {
+        level.texel(self.wrap_u.apply(x, level.width), self.wrap_v.apply(y, level.height))
+    }
+
+    fn bilinear(&self, level: &TextureLevel, x: f32, y: f32) -> [f32; 4] {
+        let (i, j) = (whole(x), whole(y));
+        let (s, t) = (x - x.floor(), y - y.floor());
+        let upper = lerp(self.texel(level, i, j), self.texel(level, i + 1, j), s);
+        let lower = lerp(self.texel(level, i, j + 1), self.texel(level, i + 1, j + 1), s);
+        lerp(upper, lower, t)
+    }
+
+    /// Mean over a convex quadrilateral in texture space, the footprint of a pixel, whose corners are
+    /// `uv` in order around (variant c): the texels whose centres lie inside, or the bilinear value
+    /// at its middle when there is none. Level 0. At most `limit` texels are read; a larger footprint
+    /// is sampled on a coarser raster.
+    #[must_use]
+    pub fn footprint_mean(&self, texture: &Texture, uv: [[f32; 2]; 4], limit: u32) -> [f32; 4] {
+        let level = &texture.levels[0];
+        let corners = uv.map(|[u, v]| [self.position(u, level.width), self.position(v, level.height)]);
+        let middle = [mean4(corners.map(|c| c[0])), mean4(corners.map(|c| c[1]))];
+        let range = |k: usize| {
+            let of = |f: fn(f32, f32) -> f32, start| corners.iter().map(|c| c[k]).fold(start, f);
+            (of(f32::min, f32::INFINITY).ceil(), of(f32::max, f32::NEG_INFINITY).floor())
+        };
+        let ((x0, x1), (y0, y1)) = (range(0), range(1));
+        let count = (x1 - x0 + 1.0).max(0.0) * (y1 - y0 + 1.0).max(0.0);
+        let step = (count / limit.max(1) as f32).sqrt().ceil().max(1.0);
+        let (mut sum, mut inside) = ([0.0; 4], 0u32);
+        let mut y = y0;
+        while y <= y1 && step.is_finite() {
+            let mut x = x0;
+            while x <= x1 {
+                if in_convex(&corners, [x, y]) {
+                    sum = add_scaled(sum, self.texel(level, whole(x), whole(y)), 1.0);
+                    inside += 1;
+                }
+                x += step;
+            }
+            y += step;
+        }
+        match inside {
+            0 => self.bilinear(level, middle[0], middle[1]),
+            n => sum.map(|v| v / n as f32),
+        }
+    }
+
+    /// Mean over the square about `uv` whose side is that of a pixel in texture space (variant d):
+    /// the longer of the two derivatives, in texels.
+    #[must_use]
+    pub fn square_mean(
+        &self,
+        texture: &Texture,
+        [u, v]: [f32; 2],
+        derivatives: [[f32; 2]; 2],
+        limit: u32,
+    ) -> [f32; 4] {
+        let (w, h) = (texture.width() as f32, texture.height() as f32);
+        let side = |[du, dv]: [f32; 2]| (du * w).hypot(dv * h);
+        let half = 0.5 * side(derivatives[0]).max(side(derivatives[1]));
+        let (du, dv) = (half / w, half / h);
+        let corners = [[u - du, v - dv], [u + du, v - dv], [u + du, v + dv], [u - du, v + dv]];
+        self.footprint_mean(texture, corners, limit)
+    }
+}
+
+fn lerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
+    std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t)
+}
+
+fn mean4(v: [f32; 4]) -> f32 {
+    0.25 * (v[0] + v[1] + v[2] + v[3])
+}
+
+/// The integer at or below.
+fn whole(x: f32) -> i64 {
+    x.floor() as i64
+}
+
+/// Whether `p` is inside or on the rim of the convex polygon, whichever way round it runs.
+fn in_convex(corners: &[[f32; 2]; 4], p: [f32; 2]) -> bool {
+    let side = |k: usize| {
+        let (a, b) = (corners[k], corners[(k + 1) % 4]);
+        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+    };
+    let sides = [side(0), side(1), side(2), side(3)];
+    sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0)
+}
+
+/// Base-2 logarithm of a positive number, to 2e-5; large and negative for 0. Made of exact
+/// steps only, so every machine gets the same bits.
+#[must_use]
+pub(crate) fn log2(v: f32) -> f32 {
+    let bits = v.to_bits();
+    let exponent = (bits >> 23) as i32 - 127;
+    let m = f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000) - 1.0;
+    exponent as f32 + log2_mantissa(m)
+}
+
+/// Base-2 logarithm of `1 + m`, 0 <= m < 1: minimax polynomial of degree 5 through both ends.
+fn log2_mantissa(m: f32) -> f32 {
+    let p = LOG2[4];
+    let p = p * m + LOG2[3];
+    let p = p * m + LOG2[2];
+    let p = p * m + LOG2[1];
+    let p = p * m + LOG2[0];
+    p * m
+}
+
+/// Coefficients of m to m^5; they sum to 1, so that the pieces join at powers of two.
+pub(crate) const LOG2: [f32; 5] = [1.441_917, -0.709_096_4, 0.415_605_8, -0.193_575_42, 0.045_148_94];
