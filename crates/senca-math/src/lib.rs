@@ -68,7 +68,7 @@ pub use polygon::{newell_normal, triangulate, triangulate_in_space, triangulate_
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
 pub use ray::Ray;
 pub use roots::{Roots, cubic_roots, quadratic_roots, quartic_roots};
-pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows};
+pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows, named_json, named_text};
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{
     CentralByNormal, Lens, LookAtCamera, Normalization1991, ParallelByNormal, View, View1991, ViewError,
