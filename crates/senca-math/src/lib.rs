@@ -6,6 +6,7 @@
 //! Where a book prints row vectors, the printing routine transposes on the way out.
 
 pub mod aabb;
+pub mod bezier;
 pub mod color;
 pub mod conventions;
 pub mod device;
@@ -13,10 +14,12 @@ pub mod frame;
 pub mod hls;
 pub mod image;
 pub mod line;
+pub mod nurbs;
 pub mod plane;
 pub mod polygon;
 pub mod projective;
 pub mod ray;
+pub mod roots;
 pub mod row_matrix;
 pub mod transform;
 pub mod view;
@@ -26,6 +29,7 @@ pub mod view_file;
 mod test_support;
 
 pub use aabb::Aabb;
+pub use bezier::{BicubicPatch, Continuity, CubicCurve, PatchEdge, Seam, SurfacePoint};
 pub use color::{LinearRgb, Srgb8};
 pub use device::{DeviceError, DeviceMap, Rect, pixel_center};
 pub use frame::{Orthonormality, axes_from_z_and_up, orthonormality};
@@ -33,9 +37,12 @@ pub use glam;
 pub use hls::Hls;
 pub use image::Image;
 pub use line::Line2;
+pub use nurbs::{BezierPiece, KnotVector, NurbsCurve, NurbsError, NurbsSurface, RationalPatch};
 pub use plane::{CANONICAL_VOLUME, CLIP_VOLUME, Plane};
+pub use polygon::{newell_normal, triangulate, triangulate_in_space, triangulate_with_holes};
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
 pub use ray::Ray;
+pub use roots::{Roots, cubic_roots, quadratic_roots, quartic_roots};
 pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows};
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{
