@@ -8,6 +8,7 @@
 pub mod classic;
 mod error;
 mod files;
+pub mod gltf;
 pub mod images;
 mod mtl;
 mod normals;
@@ -16,6 +17,7 @@ mod output;
 pub mod ply;
 pub mod stl;
 mod text;
+pub mod toml_scene;
 mod weld;
 
 pub use error::{Location, ReadError, WriteError};
