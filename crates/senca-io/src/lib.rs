@@ -11,4 +11,4 @@ mod output;
 
 pub use error::{Location, ReadError, WriteError};
 pub use files::{Directory, Files, Limits, NoFiles};
-pub use output::write_file;
+pub use output::{write_file, write_file_while};
