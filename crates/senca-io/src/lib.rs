@@ -7,6 +7,7 @@
 
 mod error;
 mod files;
+pub mod images;
 mod output;
 
 pub use error::{Location, ReadError, WriteError};

@@ -8,9 +8,26 @@
 pub mod aabb;
 pub mod color;
 pub mod conventions;
+pub mod frame;
 pub mod image;
+pub mod projective;
+pub mod row_matrix;
+pub mod transform;
+pub mod view;
+
+#[cfg(test)]
+mod test_support;
 
 pub use aabb::Aabb;
 pub use color::{LinearRgb, Srgb8};
+pub use frame::{Orthonormality, axes_from_z_and_up, orthonormality};
 pub use glam;
 pub use image::Image;
+pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
+pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows};
+pub use transform::{Axis, compose, normal_matrix};
+pub use view::{
+    CentralByNormal, Lens, LookAtCamera, Normalization1991, ParallelByNormal, View, View1991, ViewError,
+    ViewKind, ViewParameters, ViewStep, ViewSteps, ViewWindow, ViewingOperation, clip_from_canonical,
+    clip_from_gks, clip_from_opengl, world_from_look_at,
+};
