@@ -8,8 +8,16 @@
 mod error;
 mod files;
 pub mod images;
+mod mtl;
+mod normals;
+pub mod obj;
 mod output;
+pub mod ply;
+pub mod stl;
+mod text;
+mod weld;
 
 pub use error::{Location, ReadError, WriteError};
+use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
 pub use output::{write_file, write_file_while};

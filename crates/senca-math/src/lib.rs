@@ -8,9 +8,14 @@
 pub mod aabb;
 pub mod color;
 pub mod conventions;
+pub mod device;
 pub mod frame;
+pub mod hls;
 pub mod image;
+pub mod line;
+pub mod plane;
 pub mod projective;
+pub mod ray;
 pub mod row_matrix;
 pub mod transform;
 pub mod view;
@@ -20,10 +25,15 @@ mod test_support;
 
 pub use aabb::Aabb;
 pub use color::{LinearRgb, Srgb8};
+pub use device::{DeviceError, DeviceMap, Rect, pixel_center};
 pub use frame::{Orthonormality, axes_from_z_and_up, orthonormality};
 pub use glam;
+pub use hls::Hls;
 pub use image::Image;
+pub use line::Line2;
+pub use plane::{CANONICAL_VOLUME, CLIP_VOLUME, Plane};
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
+pub use ray::Ray;
 pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows};
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{

@@ -9,30 +9,45 @@ pub(crate) type Rgba<S> = [f32x16<S>; 4];
 /// 8-bit colour as numbers 0 to 1.
 #[inline(always)]
 pub(crate) fn unpack<S: Simd>(simd: S, packed: u32x16<S>) -> Rgba<S> {
-    let channel = |shift: u32| {
-        let byte: u32x16<S> = (packed >> shift) & u32x16::splat(simd, 255);
-        let float: f32x16<S> = byte.bitcast::<i32x16<S>>().to_float();
-        float * f32x16::splat(simd, 1.0 / 255.0)
-    };
-    [channel(0), channel(8), channel(16), channel(24)]
+    [
+        channel(simd, packed),
+        channel(simd, packed >> 8),
+        channel(simd, packed >> 16),
+        channel(simd, packed >> 24),
+    ]
+}
+
+#[inline(always)]
+fn channel<S: Simd>(simd: S, packed: u32x16<S>) -> f32x16<S> {
+    let byte = packed & u32x16::splat(simd, 255);
+    let float: f32x16<S> = byte.bitcast::<i32x16<S>>().to_float();
+    float * f32x16::splat(simd, 1.0 / 255.0)
 }
 
 /// Clamped to [0, 1] and rounded to 8 bits, red in the low byte; NaN becomes 0.
 #[inline(always)]
 pub(crate) fn pack<S: Simd>(simd: S, rgba: Rgba<S>) -> u32x16<S> {
-    let byte = |v: f32x16<S>| {
-        let clamped = v.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
-        let int: i32x16<S> = (clamped * f32x16::splat(simd, 255.0) + f32x16::splat(simd, 0.5)).to_int();
-        int.bitcast::<u32x16<S>>()
-    };
-    byte(rgba[0]) | (byte(rgba[1]) << 8) | (byte(rgba[2]) << 16) | (byte(rgba[3]) << 24)
+    let [r, g, b, a] = rgba;
+    byte(simd, r) | (byte(simd, g) << 8) | (byte(simd, b) << 16) | (byte(simd, a) << 24)
+}
+
+#[inline(always)]
+fn byte<S: Simd>(simd: S, v: f32x16<S>) -> u32x16<S> {
+    let clamped = v.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
+    let int: i32x16<S> = (clamped * f32x16::splat(simd, 255.0) + f32x16::splat(simd, 0.5)).to_int();
+    int.bitcast::<u32x16<S>>()
 }
 
 /// New and old colour, mixed.
 #[inline(always)]
 pub(crate) fn blended<S: Simd>(simd: S, blend: Blend, new: Rgba<S>, old: Rgba<S>) -> Rgba<S> {
     let (s, d) = (factor(simd, blend.source, new, old), factor(simd, blend.destination, new, old));
-    std::array::from_fn(|k| new[k] * s[k] + old[k] * d[k])
+    [
+        new[0] * s[0] + old[0] * d[0],
+        new[1] * s[1] + old[1] * d[1],
+        new[2] * s[2] + old[2] * d[2],
+        new[3] * s[3] + old[3] * d[3],
+    ]
 }
 
 #[inline(always)]
@@ -42,9 +57,9 @@ fn factor<S: Simd>(simd: S, factor: Factor, new: Rgba<S>, old: Rgba<S>) -> Rgba<
         Factor::Zero => [f32x16::splat(simd, 0.0); 4],
         Factor::One => [one; 4],
         Factor::SourceColor => new,
-        Factor::OneMinusSourceColor => new.map(|v| one - v),
+        Factor::OneMinusSourceColor => inverse(simd, new),
         Factor::DestinationColor => old,
-        Factor::OneMinusDestinationColor => old.map(|v| one - v),
+        Factor::OneMinusDestinationColor => inverse(simd, old),
         Factor::SourceAlpha => [new[3]; 4],
         Factor::OneMinusSourceAlpha => [one - new[3]; 4],
         Factor::DestinationAlpha => [old[3]; 4],
@@ -54,4 +69,10 @@ fn factor<S: Simd>(simd: S, factor: Factor, new: Rgba<S>, old: Rgba<S>) -> Rgba<
             [least, least, least, one]
         }
     }
+}
+
+#[inline(always)]
+fn inverse<S: Simd>(simd: S, v: Rgba<S>) -> Rgba<S> {
+    let one = f32x16::splat(simd, 1.0);
+    [one - v[0], one - v[1], one - v[2], one - v[3]]
 }

@@ -12,7 +12,8 @@ use crate::api::{
     ColorSource, Compare, Fragments, Interpolation, LANES, MAX_VARYINGS, Shaded, Shading, State,
 };
 use crate::assemble::TriangleVaryings;
-use crate::bin::{TILE, pixel_box};
+use crate::bin::pixel_box;
+use crate::blend::{Rgba, blended, pack, unpack};
 use crate::setup::{Bounds, HALF, Plane, SUB, ScreenMap, ScreenVertex, Setup, SetupState};
 use crate::shade::{interpolate, shade_plain};
 use crate::target::Clear;
@@ -30,6 +31,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) has_depth: bool,
     pub(crate) has_ids: bool,
     pub(crate) writes_depth: bool,
+    /// The depth test passes nothing that is farther than what is there.
+    pub(crate) hides_farther: bool,
     /// How fragments are coloured.
     pub(crate) color: ColorPath,
     /// Most varyings the colour path reads, for built-in shading.
@@ -89,7 +92,8 @@ pub(crate) struct TileEdges {
 
 impl TileEdges {
     /// Edges about the pixel (`x`, `y`), counted from the origin of the fixed-point raster, for the
-    /// pixels of `area`, counted from that pixel. `None` when the triangle misses them all.
+    /// pixels of `area`, counted from that pixel and widened to whole vectors. `None` when the triangle
+    /// misses them all.
     #[inline(always)]
     pub(crate) fn new(v: &[ScreenVertex; 3], [x, y]: [i32; 2], area: &Bounds) -> Option<Self> {
         let (cx, cy) = (i64::from(x * SUB + HALF), i64::from(y * SUB + HALF));
@@ -101,8 +105,8 @@ impl TileEdges {
             let owns = ey < 0 || (ey == 0 && ex > 0);
             let c = (value - i64::from(!owns)) >> crate::setup::SUB_BITS;
             let (dx, dy) = (i64::from(-ey), i64::from(ex));
-            let (x0, x1) = (dx * i64::from(area.x0), dx * i64::from(area.x1 - 1));
-            let (y0, y1) = (dy * i64::from(area.y0), dy * i64::from(area.y1 - 1));
+            let (x0, x1) = (dx * i64::from(area.x0 & !7), dx * i64::from((area.x1 - 1) | 7));
+            let (y0, y1) = (dy * i64::from(area.y0 & !1), dy * i64::from((area.y1 - 1) | 1));
             if c + x0.max(x1) + y0.max(y1) < 0 {
                 return None;
             }
@@ -115,20 +119,23 @@ impl TileEdges {
         Some(edges)
     }
 
-    /// Values at pixel (`x`, `y`) of the tile.
+    /// Value of edge `k` at pixel (`x`, `y`) of the tile.
     #[inline(always)]
-    fn at(&self, x: i32, y: i32) -> [i32; 3] {
-        std::array::from_fn(|k| {
-            self.c[k].wrapping_add(self.dx[k].wrapping_mul(x)).wrapping_add(self.dy[k].wrapping_mul(y))
-        })
+    fn at(&self, k: usize, x: i32, y: i32) -> i32 {
+        self.c[k].wrapping_add(self.dx[k].wrapping_mul(x)).wrapping_add(self.dy[k].wrapping_mul(y))
     }
 
-    /// Per edge, what to add to its value at a block's first pixel for its greatest in the block.
+    /// What to add to the value of edge `k` at a block's first pixel for its greatest in the block.
     #[inline(always)]
-    fn reach(&self) -> [i32; 3] {
-        std::array::from_fn(|k| {
-            7i32.wrapping_mul(self.dx[k].max(0)).wrapping_add(7i32.wrapping_mul(self.dy[k].max(0)))
-        })
+    fn reach(&self, k: usize) -> i32 {
+        7i32.wrapping_mul(self.dx[k].max(0)).wrapping_add(7i32.wrapping_mul(self.dy[k].max(0)))
+    }
+
+    /// Value of edge `k` at the lanes of a vector, from that at its first lane.
+    #[inline(always)]
+    fn lanes<S: Simd>(&self, simd: S, k: usize) -> i32x16<S> {
+        i32x16::load_array(simd, LANE_X) * i32x16::splat(simd, self.dx[k])
+            + i32x16::load_array(simd, LANE_Y) * i32x16::splat(simd, self.dy[k])
     }
 }
 
@@ -146,6 +153,10 @@ pub(crate) struct TileDraw<'a, 'b> {
     /// First pixel of the tile in the target.
     pub(crate) x: i32,
     pub(crate) y: i32,
+    /// Pixels of the target that may be written, of this tile.
+    pub(crate) bounds: Bounds,
+    /// Whether they are fewer than the tile has.
+    pub(crate) partial: bool,
     pub(crate) counts: FragmentCounts,
     pub(crate) varyings: TriangleVaryings,
 }
@@ -170,8 +181,7 @@ impl TileDraw<'_, '_> {
         id: u32,
     ) {
         let map = self.pass.map;
-        let tile = Bounds { x0: self.x, y0: self.y, x1: self.x + TILE as i32, y1: self.y + TILE as i32 };
-        let pixels = pixel_box(&v, map).intersect(tile);
+        let pixels = pixel_box(&v, map).intersect(self.bounds);
         if pixels.is_empty() {
             return;
         }
@@ -195,47 +205,57 @@ impl TileDraw<'_, '_> {
     /// Goes through the blocks of the triangle's box.
     #[inline(always)]
     fn blocks<S: Simd>(&mut self, simd: S, t: &Triangle<'_>, edges: &TileEdges, local: &Bounds) {
-        let reach = edges.reach();
-        let lane_x = i32x16::load_array(simd, LANE_X);
-        let lane_y = i32x16::load_array(simd, LANE_Y);
-        let pattern: [i32x16<S>; 3] = std::array::from_fn(|k| {
-            lane_x * i32x16::splat(simd, edges.dx[k]) + lane_y * i32x16::splat(simd, edges.dy[k])
-        });
-        let hidden_test =
-            self.pass.has_depth && matches!(self.pass.state.depth_test, Compare::Less | Compare::LessEqual);
+        let reach = [edges.reach(0), edges.reach(1), edges.reach(2)];
+        let pattern = [edges.lanes(simd, 0), edges.lanes(simd, 1), edges.lanes(simd, 2)];
         for by in local.y0 >> 3..=(local.y1 - 1) >> 3 {
             for bx in local.x0 >> 3..=(local.x1 - 1) >> 3 {
-                let at = edges.at(bx * 8, by * 8);
-                if (0..3).any(|k| at[k].wrapping_add(reach[k]) < 0) {
+                let at =
+                    [edges.at(0, bx * 8, by * 8), edges.at(1, bx * 8, by * 8), edges.at(2, bx * 8, by * 8)];
+                let best = [
+                    at[0].wrapping_add(reach[0]),
+                    at[1].wrapping_add(reach[1]),
+                    at[2].wrapping_add(reach[2]),
+                ];
+                if best[0] | best[1] | best[2] < 0 {
                     continue;
                 }
-                let block = by as usize * BLOCKS + bx as usize;
+                let block = (by as usize * BLOCKS + bx as usize) & (BLOCKS * BLOCKS - 1);
                 if self.buffer.present >> block & 1 == 0 {
                     self.buffer.fetch(self.band, self.x as usize, block, self.pass.clear.as_ref());
                 }
-                if hidden_test && t.setup.z_min > self.buffer.farthest[block] {
+                if self.pass.hides_farther && t.setup.z_min > self.buffer.farthest[block] {
                     continue;
                 }
-                let rows = (local.y0 - by * 8).max(0) >> 1..=((local.y1 - 1 - by * 8).min(7)) >> 1;
-                for pair in rows {
-                    let e: [i32x16<S>; 3] = std::array::from_fn(|k| {
-                        pattern[k]
-                            + i32x16::splat(simd, at[k].wrapping_add(edges.dy[k].wrapping_mul(2 * pair)))
-                    });
-                    let inside = (e[0] | e[1] | e[2]).simd_ge(i32x16::splat(simd, 0));
-                    let column = lane_x + i32x16::splat(simd, bx * 8);
-                    let row = lane_y + i32x16::splat(simd, by * 8 + 2 * pair);
-                    let allowed = column.simd_ge(i32x16::splat(simd, local.x0))
-                        & column.simd_lt(i32x16::splat(simd, local.x1))
-                        & row.simd_ge(i32x16::splat(simd, local.y0))
-                        & row.simd_lt(i32x16::splat(simd, local.y1));
-                    let inside = inside & allowed;
+                let (first, last) = ((local.y0 - by * 8).max(0) >> 1, (local.y1 - 1 - by * 8).min(7) >> 1);
+                for pair in first..=last {
+                    let e0 = pattern[0]
+                        + i32x16::splat(simd, at[0].wrapping_add(edges.dy[0].wrapping_mul(2 * pair)));
+                    let e1 = pattern[1]
+                        + i32x16::splat(simd, at[1].wrapping_add(edges.dy[1].wrapping_mul(2 * pair)));
+                    let e2 = pattern[2]
+                        + i32x16::splat(simd, at[2].wrapping_add(edges.dy[2].wrapping_mul(2 * pair)));
+                    let mut inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
+                    if self.partial {
+                        inside &= self.within_bounds(simd, bx * 8, by * 8 + 2 * pair);
+                    }
                     if inside.any_true() {
-                        self.vector(simd, t, block, pair as usize, inside);
+                        self.vector(simd, t, block, pair as usize & 3, inside);
                     }
                 }
             }
         }
+    }
+
+    /// Lanes that may be written, of the vector at pixel (`x`, `y`) of the tile.
+    #[inline(always)]
+    fn within_bounds<S: Simd>(&self, simd: S, x: i32, y: i32) -> mask32x16<S> {
+        let b = &self.bounds;
+        let column = i32x16::load_array(simd, LANE_X) + i32x16::splat(simd, self.x + x);
+        let row = i32x16::load_array(simd, LANE_Y) + i32x16::splat(simd, self.y + y);
+        column.simd_ge(i32x16::splat(simd, b.x0))
+            & column.simd_lt(i32x16::splat(simd, b.x1))
+            & row.simd_ge(i32x16::splat(simd, b.y0))
+            & row.simd_lt(i32x16::splat(simd, b.y1))
     }
 
     /// Tests and writes two rows of 8 pixels.
@@ -255,10 +275,9 @@ impl TileDraw<'_, '_> {
             .max(f32x16::splat(simd, t.setup.z_min))
             .min(f32x16::splat(simd, t.setup.z_max));
         self.counts.tested += u64::from(inside.to_bitmask().count_ones());
-        let lanes = pair * LANES..pair * LANES + LANES;
         let mut pass = inside;
         if self.pass.has_depth {
-            let stored = f32x16::from_slice(simd, &self.buffer.depth[block][lanes.clone()]);
+            let stored = f32x16::load_array_ref(simd, &self.buffer.depth[block][pair]);
             pass &= compare(simd, self.pass.state.depth_test, z, stored);
         }
         let bits = pass.to_bitmask() as u16;
@@ -268,14 +287,14 @@ impl TileDraw<'_, '_> {
         self.counts.passed += u64::from(bits.count_ones());
         let keep = self.color(simd, t, block, pair, pass, bits, [fx, fy], z);
         if self.pass.writes_depth {
-            let plane = &mut self.buffer.depth[block][lanes.clone()];
-            let stored = f32x16::from_slice(simd, plane);
-            keep.select(z, stored).store_slice(plane);
+            let plane = &mut self.buffer.depth[block][pair];
+            let stored = f32x16::load_array_ref(simd, plane);
+            keep.select(z, stored).store_array(plane);
         }
         if self.pass.has_ids {
-            let plane = &mut self.buffer.ids[block][lanes];
-            let stored = u32x16::from_slice(simd, plane);
-            keep.select(u32x16::splat(simd, t.id), stored).store_slice(plane);
+            let plane = &mut self.buffer.ids[block][pair];
+            let stored = u32x16::load_array_ref(simd, plane);
+            keep.select(u32x16::splat(simd, t.id), stored).store_array(plane);
         }
     }
 
@@ -295,21 +314,33 @@ impl TileDraw<'_, '_> {
         let mut keep = pass;
         let rgba = match self.pass.color {
             ColorPath::None => return pass,
-            ColorPath::Constant(rgba) => rgba.map(|v| f32x16::splat(simd, v)),
+            ColorPath::Constant([r, g, b, a]) => [
+                f32x16::splat(simd, r),
+                f32x16::splat(simd, g),
+                f32x16::splat(simd, b),
+                f32x16::splat(simd, a),
+            ],
             ColorPath::Varying { first, alpha } => {
-                let [b1, b2] = weights(simd, t.setup, at);
-                let value = |k: usize| {
-                    (f32x16::splat(simd, self.varyings.base[k])
-                        + b1 * f32x16::splat(simd, self.varyings.d1[k]))
-                        + b2 * f32x16::splat(simd, self.varyings.d2[k])
-                };
-                let a = if alpha { value(first + 3) } else { f32x16::splat(simd, 1.0) };
-                [value(first), value(first + 1), value(first + 2), a]
+                let b = weights(simd, t.setup, at);
+                let values = &self.varyings;
+                let a = if alpha { varying(simd, values, first + 3, b) } else { f32x16::splat(simd, 1.0) };
+                [
+                    varying(simd, values, first, b),
+                    varying(simd, values, first + 1, b),
+                    varying(simd, values, first + 2, b),
+                    a,
+                ]
             }
             ColorPath::Plain => {
                 let shaded = self.plain(t, block, pair, bits, z.to_array());
                 keep &= mask32x16::from_bitmask(simd, u64::from(shaded.keep));
-                shaded.rgba.map(|plane| f32x16::load_array(simd, plane))
+                let [r, g, b, a] = &shaded.rgba;
+                [
+                    f32x16::load_array_ref(simd, r),
+                    f32x16::load_array_ref(simd, g),
+                    f32x16::load_array_ref(simd, b),
+                    f32x16::load_array_ref(simd, a),
+                ]
             }
         };
         self.counts.shaded += u64::from(bits.count_ones());
@@ -348,42 +379,45 @@ impl TileDraw<'_, '_> {
     }
 
     #[inline(always)]
-    fn write<S: Simd>(
-        &mut self,
-        simd: S,
-        block: usize,
-        pair: usize,
-        keep: mask32x16<S>,
-        rgba: [f32x16<S>; 4],
-    ) {
-        let lanes = pair * LANES..pair * LANES + LANES;
+    fn write<S: Simd>(&mut self, simd: S, block: usize, pair: usize, keep: mask32x16<S>, rgba: Rgba<S>) {
         match self.pass.format {
             ColorFormat::None => {}
             ColorFormat::Rgba8 => {
-                let plane = &mut self.buffer.rgba8[block][lanes];
-                let stored = u32x16::from_slice(simd, plane);
+                let plane = &mut self.buffer.rgba8[block][pair];
+                let stored = u32x16::load_array_ref(simd, plane);
                 let rgba = match self.pass.state.blend {
                     None => rgba,
-                    Some(blend) => {
-                        crate::blend::blended(simd, blend, rgba, crate::blend::unpack(simd, stored))
-                    }
+                    Some(blend) => blended(simd, blend, rgba, unpack(simd, stored)),
                 };
-                keep.select(crate::blend::pack(simd, rgba), stored).store_slice(plane);
+                keep.select(pack(simd, rgba), stored).store_array(plane);
             }
             ColorFormat::Rgba32F => {
-                let planes = &mut self.buffer.rgba[block];
-                let stored: [f32x16<S>; 4] =
-                    std::array::from_fn(|k| f32x16::from_slice(simd, &planes[k][lanes.clone()]));
+                let [r, g, b, a] = &mut self.buffer.rgba;
+                let planes =
+                    [&mut r[block][pair], &mut g[block][pair], &mut b[block][pair], &mut a[block][pair]];
+                let stored = [
+                    f32x16::load_array_ref(simd, planes[0]),
+                    f32x16::load_array_ref(simd, planes[1]),
+                    f32x16::load_array_ref(simd, planes[2]),
+                    f32x16::load_array_ref(simd, planes[3]),
+                ];
                 let rgba = match self.pass.state.blend {
                     None => rgba,
-                    Some(blend) => crate::blend::blended(simd, blend, rgba, stored),
+                    Some(blend) => blended(simd, blend, rgba, stored),
                 };
-                for k in 0..4 {
-                    keep.select(rgba[k], stored[k]).store_slice(&mut planes[k][lanes.clone()]);
+                for (k, plane) in planes.into_iter().enumerate() {
+                    keep.select(rgba[k], stored[k]).store_array(plane);
                 }
             }
         }
     }
+}
+
+/// Varying `k` at weights of corners 1 and 2; see [`TriangleVaryings::at`].
+#[inline(always)]
+fn varying<S: Simd>(simd: S, v: &TriangleVaryings, k: usize, [b1, b2]: [f32x16<S>; 2]) -> f32x16<S> {
+    let k = k % MAX_VARYINGS;
+    (f32x16::splat(simd, v.base[k]) + b1 * f32x16::splat(simd, v.d1[k])) + b2 * f32x16::splat(simd, v.d2[k])
 }
 
 /// A plane at 16 pixels; see [`Plane::at`].

@@ -4,16 +4,22 @@
 //! A tile is 8 x 8 blocks of 8 x 8 pixels. The pixels of a block are stored together, row by row, so
 //! that 16 in a row are two rows of 8: one vector.
 
+use crate::api::LANES;
 use crate::bin::TILE;
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
 
 /// Blocks along a side of a tile.
 pub(crate) const BLOCKS: usize = TILE / 8;
-/// Pixels of a block.
-pub(crate) const BLOCK_PIXELS: usize = 64;
 
+/// A quantity of the pixels of a block: four vectors, each two rows of 8 pixels.
+pub(crate) type Block<T> = [[T; LANES]; 4];
 /// A quantity of every pixel of a tile, block after block.
-pub(crate) type BlockPlane<T> = Vec<[T; BLOCK_PIXELS]>;
+pub(crate) type BlockPlane<T> = Box<[Block<T>; BLOCKS * BLOCKS]>;
+
+fn block_plane<T: Copy + std::fmt::Debug>(value: T) -> BlockPlane<T> {
+    let blocks = vec![[[value; LANES]; 4]; BLOCKS * BLOCKS].into_boxed_slice();
+    blocks.try_into().unwrap_or_else(|_| unreachable!("made with that many blocks"))
+}
 
 /// The rows of a target that one row of tiles covers.
 pub(crate) struct Band<'a> {
@@ -68,18 +74,31 @@ impl ColorFormat {
 }
 
 /// The tile being drawn.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct TileBuffer {
     /// Colour packed, red in the low byte.
     pub(crate) rgba8: BlockPlane<u32>,
-    /// Colour as four planes per block.
-    pub(crate) rgba: Vec<[[f32; BLOCK_PIXELS]; 4]>,
+    /// Colour as four planes.
+    pub(crate) rgba: [BlockPlane<f32>; 4],
     pub(crate) depth: BlockPlane<f32>,
     pub(crate) ids: BlockPlane<u32>,
     /// Per block, no stored depth is greater.
-    pub(crate) farthest: Vec<f32>,
+    pub(crate) farthest: [f32; BLOCKS * BLOCKS],
     /// Blocks that have been brought in, bit by bit.
     pub(crate) present: u64,
+}
+
+impl Default for TileBuffer {
+    fn default() -> Self {
+        Self {
+            rgba8: block_plane(0),
+            rgba: [block_plane(0.0), block_plane(0.0), block_plane(0.0), block_plane(0.0)],
+            depth: block_plane(0.0),
+            ids: block_plane(0),
+            farthest: [f32::INFINITY; BLOCKS * BLOCKS],
+            present: 0,
+        }
+    }
 }
 
 /// A row of 8 pixels of block (`bx`, `by`) within a band; fewer at the right rim.
@@ -90,23 +109,6 @@ fn row_range(width: usize, tile_x: usize, block: usize, y: usize) -> std::ops::R
 }
 
 impl TileBuffer {
-    /// Makes room for the planes of a draw.
-    pub(crate) fn prepare(&mut self, format: ColorFormat, depth: bool, ids: bool) {
-        let blocks = BLOCKS * BLOCKS;
-        self.farthest.resize(blocks, f32::INFINITY);
-        match format {
-            ColorFormat::Rgba8 => self.rgba8.resize(blocks, [0; BLOCK_PIXELS]),
-            ColorFormat::Rgba32F => self.rgba.resize(blocks, [[0.0; BLOCK_PIXELS]; 4]),
-            ColorFormat::None => {}
-        }
-        if depth {
-            self.depth.resize(blocks, [0.0; BLOCK_PIXELS]);
-        }
-        if ids {
-            self.ids.resize(blocks, [0; BLOCK_PIXELS]);
-        }
-    }
-
     /// Brings a block in, from the target or freshly cleared.
     #[cold]
     #[inline(never)]
@@ -119,14 +121,15 @@ impl TileBuffer {
         }
         if let Some(plane) = &band.depth {
             match clear.and_then(|c| c.depth) {
-                Some(depth) => self.depth[block].fill(depth),
+                Some(depth) => fill(&mut self.depth[block], depth),
                 None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
             }
-            self.farthest[block] = self.depth[block].iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            self.farthest[block] =
+                self.depth[block].as_flattened().iter().copied().fold(f32::NEG_INFINITY, f32::max);
         }
         if let Some(plane) = &band.ids {
             match clear.and_then(|c| c.id) {
-                Some(id) => self.ids[block].fill(id),
+                Some(id) => fill(&mut self.ids[block], id),
                 None => fetch_plane(&mut self.ids[block], plane, band, tile_x, block),
             }
         }
@@ -134,10 +137,12 @@ impl TileBuffer {
 
     fn clear_color(&mut self, block: usize, rgba: [f32; 4], band: &Band<'_>) {
         match band.color {
-            Some(ColorPlane::Rgba8(_)) => self.rgba8[block].fill(u32::from_le_bytes(rgba8_from_rgba(rgba))),
+            Some(ColorPlane::Rgba8(_)) => {
+                fill(&mut self.rgba8[block], u32::from_le_bytes(rgba8_from_rgba(rgba)))
+            }
             Some(ColorPlane::Rgba32F(_)) => {
-                for (plane, v) in self.rgba[block].iter_mut().zip(rgba) {
-                    plane.fill(v);
+                for (plane, v) in self.rgba.iter_mut().zip(rgba) {
+                    fill(&mut plane[block], v);
                 }
             }
             None => {}
@@ -149,14 +154,16 @@ impl TileBuffer {
             let range = row_range(band.width, tile_x, block, y);
             match &band.color {
                 Some(ColorPlane::Rgba8(p)) => {
-                    for (to, from) in self.rgba8[block][row * 8..].iter_mut().zip(&p[range]) {
+                    for (to, from) in
+                        self.rgba8[block].as_flattened_mut()[row * 8..].iter_mut().zip(&p[range])
+                    {
                         *to = u32::from_le_bytes(*from);
                     }
                 }
                 Some(ColorPlane::Rgba32F(p)) => {
                     for (x, from) in p[range].iter().enumerate() {
-                        for (plane, v) in self.rgba[block].iter_mut().zip(from) {
-                            plane[row * 8 + x] = *v;
+                        for (plane, v) in self.rgba.iter_mut().zip(from) {
+                            plane[block].as_flattened_mut()[row * 8 + x] = *v;
                         }
                     }
                 }
@@ -189,25 +196,31 @@ impl TileBuffer {
             let range = row_range(band.width, tile_x, block, y);
             match &mut band.color {
                 Some(ColorPlane::Rgba8(p)) => {
-                    for (to, from) in p[range.clone()].iter_mut().zip(&self.rgba8[block][row * 8..]) {
+                    for (to, from) in
+                        p[range.clone()].iter_mut().zip(&self.rgba8[block].as_flattened()[row * 8..])
+                    {
                         *to = from.to_le_bytes();
                     }
                 }
                 Some(ColorPlane::Rgba32F(p)) => {
                     for (x, to) in p[range.clone()].iter_mut().enumerate() {
-                        *to = std::array::from_fn(|k| self.rgba[block][k][row * 8 + x]);
+                        *to = std::array::from_fn(|k| self.rgba[k][block].as_flattened()[row * 8 + x]);
                     }
                 }
                 None => {}
             }
             if let Some(p) = band.depth.as_mut().filter(|_| depth_written) {
-                store_row(&mut p[range.clone()], &self.depth[block][row * 8..]);
+                store_row(&mut p[range.clone()], &self.depth[block].as_flattened()[row * 8..]);
             }
             if let Some(p) = &mut band.ids {
-                store_row(&mut p[range], &self.ids[block][row * 8..]);
+                store_row(&mut p[range], &self.ids[block].as_flattened()[row * 8..]);
             }
         }
     }
+}
+
+fn fill<T: Copy>(block: &mut Block<T>, value: T) {
+    block.as_flattened_mut().fill(value);
 }
 
 /// Rows of a block that are inside the band: row of the band, row of the block.
@@ -216,16 +229,10 @@ fn block_rows(band: &Band<'_>, block: usize) -> impl Iterator<Item = (usize, usi
     (first..(first + 8).min(band.height)).zip(0..)
 }
 
-fn fetch_plane<T: Copy>(
-    to: &mut [T; BLOCK_PIXELS],
-    plane: &[T],
-    band: &Band<'_>,
-    tile_x: usize,
-    block: usize,
-) {
+fn fetch_plane<T: Copy>(to: &mut Block<T>, plane: &[T], band: &Band<'_>, tile_x: usize, block: usize) {
     for (y, row) in block_rows(band, block) {
         let from = &plane[row_range(band.width, tile_x, block, y)];
-        to[row * 8..][..from.len()].copy_from_slice(from);
+        to.as_flattened_mut()[row * 8..][..from.len()].copy_from_slice(from);
     }
 }
 

@@ -1,10 +1,10 @@
 //! The tiled rasterizer: project, bin, then draw tile by tile on as many threads as wanted.
 
-use crate::api::{Counters, Primitives, Rasterizer, Shading, State};
+use crate::api::{Compare, Counters, Primitives, Rasterizer, Shading, State};
 use crate::assemble::{TriangleVaryings, varyings_of, vertex_count};
 use crate::bin::{BinInput, RUN, Reference, Run, TILE};
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw};
-use crate::setup::{ScreenMap, ScreenVertex, SetupState, double_area};
+use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState, double_area};
 use crate::target::{Clear, Target};
 use crate::tile::{Band, ColorFormat, TileBuffer, bands};
 use fearless_simd::{Level, Simd, dispatch};
@@ -104,6 +104,8 @@ impl Rasterizer for TiledRasterizer {
             has_depth: target.depth.is_some(),
             has_ids: target.ids.is_some(),
             writes_depth: target.depth.is_some() && state.depth_write,
+            hides_farther: target.depth.is_some()
+                && matches!(state.depth_test, Compare::Less | Compare::LessEqual),
             color: ColorPath::of(shading, ColorFormat::of(target), triangles.stride),
             interpolation: state.interpolation,
         };
@@ -185,7 +187,6 @@ impl Frame<'_> {
         let spare = Mutex::new(std::mem::take(buffers));
         let counts = share(threads, work, |(_, mut band)| {
             let mut buffer = lock(&spare).pop().unwrap_or_default();
-            buffer.prepare(self.pass.format, self.pass.has_depth, self.pass.has_ids);
             let counts = dispatch!(level, simd => self.draw_band(simd, &mut band, &mut buffer));
             lock(&spare).push(buffer);
             counts
@@ -202,8 +203,19 @@ impl Frame<'_> {
         for column in 0..self.input.tiles[0] {
             let tile = band.row * self.input.tiles[0] + column;
             let (x, y) = (column * TILE, band.row * TILE);
-            let mut draw =
-                TileDraw { pass: self.pass, band, buffer, x: x as i32, y: y as i32, counts, varyings };
+            let whole = Bounds { x0: x as i32, y0: y as i32, x1: (x + TILE) as i32, y1: (y + TILE) as i32 };
+            let bounds = whole.intersect(self.pass.map.bounds);
+            let mut draw = TileDraw {
+                pass: self.pass,
+                band,
+                buffer,
+                x: x as i32,
+                y: y as i32,
+                bounds,
+                partial: bounds != whole,
+                counts,
+                varyings,
+            };
             for run in self.runs {
                 self.draw_run(simd, &mut draw, run, tile);
             }

@@ -7,25 +7,44 @@
 
 mod animation;
 mod camera;
+mod faces;
 mod fog;
 mod ids;
 mod light;
 mod material;
+mod measure;
 mod mesh;
+mod mesh_check;
 mod node;
+mod normals;
 mod scene;
 mod shape;
+mod tessellate;
+#[cfg(test)]
+mod test_support;
 mod texture;
+mod topology;
 
 pub use animation::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation};
 pub use camera::{Camera, Projection};
+pub use faces::{is_flat_quad, split_quad};
 pub use fog::{Fog, FogFalloff};
 pub use ids::{AnimationId, CameraId, GeometryId, ImageId, LightId, MaterialId, NodeId, SkinId, TextureId};
 pub use light::{Attenuation, Light, LightKind, SpotFalloff};
 pub use material::{AlphaMode, Material, MetallicRoughness, Phong, Reflection};
 pub use mesh::{Faces, JointInfluence, Mesh, MorphTarget, Surface, Vertices};
+pub use mesh_check::MeshError;
 pub use node::{Node, Skin, Transform};
+pub use normals::{
+    DegeneratePolygon, NormalSettings, NormalWeight, PolygonNormal, compute_normals, newell_vector,
+    polygon_normal_1991, polygon_normals_1991,
+};
 pub use scene::{Background, Geometry, Instance, Scene, SceneError, Warning};
 pub use senca_math as math;
 pub use shape::{BezierPatch, NurbsSurface, Shape};
+pub use tessellate::{
+    MAX_FACES, PixelTolerance, REVOLUTION_CREASE, ShapeError, TessellationSettings, Tolerance, tessellate,
+    triangulated,
+};
 pub use texture::{ColorSpace, Filter, ImageData, Texture, TextureImage, TextureRef, Wrap};
+pub use topology::{EdgeCounts, Topology};
