@@ -6,9 +6,12 @@
 //! geometry (instances). Readers build scenes, renderers take `&Scene`.
 
 mod animation;
+mod bounds;
 mod camera;
+mod default_lights;
 mod faces;
 mod fog;
+mod framing;
 mod ids;
 mod light;
 mod material;
@@ -27,8 +30,10 @@ mod topology;
 
 pub use animation::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation};
 pub use camera::{Camera, Projection};
+pub use default_lights::{DefaultLights, default_lights};
 pub use faces::{is_flat_quad, split_quad};
 pub use fog::{Fog, FogFalloff};
+pub use framing::{DEFAULT_YFOV, PlacedCamera, SceneCamera, frame_bounds};
 pub use ids::{AnimationId, CameraId, GeometryId, ImageId, LightId, MaterialId, NodeId, SkinId, TextureId};
 pub use light::{Attenuation, Light, LightKind, SpotFalloff};
 pub use material::{AlphaMode, Material, MetallicRoughness, Phong, Reflection};

@@ -4,8 +4,8 @@ use senca_math::LinearRgb;
 use senca_math::glam::DMat4;
 
 use crate::{
-    Animation, Camera, Fog, GeometryId, Light, Material, MaterialId, Node, NodeId, Shape, Skin, Texture,
-    TextureImage,
+    Animation, Camera, CameraId, Fog, GeometryId, Light, LightId, Material, MaterialId, Node, NodeId, Shape,
+    Skin, Texture, TextureImage,
 };
 
 /// Everything there is to see. Entries name each other by typed index; a reader checks
@@ -127,6 +127,18 @@ impl Scene {
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// Appends `light` and returns its id.
+    pub fn add_light(&mut self, light: Light) -> LightId {
+        self.lights.push(light);
+        LightId(self.lights.len() as u32 - 1)
+    }
+
+    /// Appends `camera` and returns its id.
+    pub fn add_camera(&mut self, camera: Camera) -> CameraId {
+        self.cameras.push(camera);
+        CameraId(self.cameras.len() as u32 - 1)
     }
 
     /// A scene of one shape at the origin.

@@ -74,7 +74,7 @@ impl Tolerance {
 /// `least..=most`: the sagitta `r (1 - cos(pi / n))` is at most the tolerance.
 pub(super) fn steps_around(radius: f64, tolerance: f64, least: u32, most: u32) -> u32 {
     let cosine = 1.0 - tolerance / radius.max(f64::MIN_POSITIVE);
-    if !(cosine < 1.0) {
+    if cosine.is_nan() || cosine >= 1.0 {
         return most;
     }
     let half_step = cosine.max(-1.0).acos();
