@@ -7,6 +7,7 @@
 
 mod error;
 mod files;
+pub mod gltf;
 pub mod images;
 mod mtl;
 mod normals;
