@@ -14,11 +14,13 @@ pub mod hls;
 pub mod image;
 pub mod line;
 pub mod plane;
+pub mod polygon;
 pub mod projective;
 pub mod ray;
 pub mod row_matrix;
 pub mod transform;
 pub mod view;
+pub mod view_file;
 
 #[cfg(test)]
 mod test_support;
@@ -41,3 +43,4 @@ pub use view::{
     ViewKind, ViewParameters, ViewStep, ViewSteps, ViewWindow, ViewingOperation, clip_from_canonical,
     clip_from_gks, clip_from_opengl, world_from_look_at,
 };
+pub use view_file::{ViewFile, ViewFileError, ViewFileErrorKind};
