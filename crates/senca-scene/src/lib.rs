@@ -20,6 +20,7 @@ mod mesh;
 mod mesh_check;
 mod node;
 mod normals;
+mod patch_converter;
 mod scene;
 mod shape;
 mod tessellate;
@@ -44,6 +45,7 @@ pub use normals::{
     DegeneratePolygon, NormalSettings, NormalWeight, PolygonNormal, compute_normals, newell_vector,
     polygon_normal_1991, polygon_normals_1991,
 };
+pub use patch_converter::{PatchConversion, VertexSearch, patch_to_polygons};
 pub use scene::{Background, Geometry, Instance, Scene, SceneError, Warning};
 pub use senca_math as math;
 pub use shape::{BezierPatch, NurbsSurface, Shape};

@@ -31,6 +31,7 @@ use std::borrow::Cow;
 
 use crate::{Mesh, NormalSettings, Shape};
 
+pub(crate) use patches::on_patch;
 pub use polygon::triangulated;
 pub use revolution::CREASE as REVOLUTION_CREASE;
 pub use tolerance::{PixelTolerance, Tolerance};

@@ -282,7 +282,7 @@ fn slope(c: &Cubic, t: f64) -> DVec3 {
 
 /// Unit normal at `(u, v)`, the direction of `dS/du x dS/dv`. Where that vanishes (collapsed edges),
 /// the limit from inside, found by stepping towards the middle until it does not.
-pub(crate) fn normal(p: &[DVec3; 16], uv: DVec2) -> DVec3 {
+pub(super) fn normal(p: &[DVec3; 16], uv: DVec2) -> DVec3 {
     let row = |r: usize| [p[4 * r], p[4 * r + 1], p[4 * r + 2], p[4 * r + 3]];
     let column = |c: usize| [p[c], p[4 + c], p[8 + c], p[12 + c]];
     let scale = (0..4).flat_map(|i| [row(i), column(i)]).map(|c| c[0].distance(c[3])).fold(0.0, f64::max);
