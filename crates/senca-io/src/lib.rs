@@ -16,6 +16,7 @@ mod output;
 pub mod ply;
 pub mod stl;
 mod text;
+pub mod toml_scene;
 mod weld;
 
 pub use error::{Location, ReadError, WriteError};
