@@ -16,6 +16,7 @@ mod transformed;
 mod visibility;
 
 pub use error::RenderError;
+pub use lines::{Segment, SegmentKind, hidden_line_segments, wire_segments};
 pub use render::{render, render_with};
 pub use report::{Control, Report, StageSeconds};
 pub use settings::{

@@ -291,7 +291,7 @@ impl Frame<'_, '_> {
 }
 
 /// Rows of `area` in bands of bounded memory.
-fn bands(area: &Crop, triangles: u32) -> Vec<Crop> {
+pub(crate) fn bands(area: &Crop, triangles: u32) -> Vec<Crop> {
     let pixels = BAND_PIXELS.max(8 * triangles as usize);
     let rows = ((pixels / area.width as usize).max(1)).min(area.height as usize) as u32;
     (0..area.height.div_ceil(rows))
@@ -412,7 +412,7 @@ impl Resolve<'_, '_> {
                 let y = first_row + j;
                 for x in start..end {
                     let (rgba, surface) = self.pixel(x, y, &mut cache);
-                    self.put(&mut row[left + x], rgba);
+                    put_sample(&mut row[left + x], rgba, self.weight, self.first);
                     shaded += u64::from(surface);
                 }
             }
@@ -438,15 +438,15 @@ impl Resolve<'_, '_> {
         let through = 1.0 - over[3];
         (std::array::from_fn(|k| over[k] + through * behind[k]), surface)
     }
+}
 
-    fn put(&self, pixel: &mut [f32; 4], rgba: [f32; 4]) {
-        if self.first && self.weight == 1.0 {
-            *pixel = rgba;
-            return;
-        }
-        let old = if self.first { [0.0; 4] } else { *pixel };
-        *pixel = std::array::from_fn(|k| old[k] + self.weight * rgba[k]);
-    }
+/// Adds a sample of weight `weight` to a pixel, or starts it with the first.
+pub(crate) fn put_sample(pixel: &mut [f32; 4], rgba: [f32; 4], weight: f32, first: bool) {
+    *pixel = match first {
+        true if weight == 1.0 => rgba,
+        true => rgba.map(|v| weight * v),
+        false => std::array::from_fn(|k| pixel[k] + weight * rgba[k]),
+    };
 }
 
 /// What is seen where nothing is.

@@ -128,8 +128,11 @@ pub struct WireSettings {
     pub width: f32,
     /// Side of points in pixels, >= 1. Default 2.
     pub point_size: f32,
-    /// Whether edges between faces that lie in one plane are left out, such as the diagonals of a box
-    /// that came as triangles. Default true.
+    /// Length of drawn normals in world units; `None`, the default, takes 1/30 of the width of what is
+    /// seen at the distance of the scene's middle.
+    pub normal_length: Option<f64>,
+    /// Whether hidden-line drawings leave out edges between faces that lie in one plane, such as the
+    /// diagonals of a box that came as triangles. Default true.
     pub skip_flat_edges: bool,
 }
 
@@ -140,6 +143,7 @@ impl Default for WireSettings {
             normal_color: LinearRgb::new(0.0, 0.1, 0.8),
             width: 1.0,
             point_size: 2.0,
+            normal_length: None,
             skip_flat_edges: true,
         }
     }

@@ -42,13 +42,13 @@ impl PhongConstants {
         Self { ambient: color, diffuse: color, specular: LinearRgb::BLACK, exponent: 1.0 }
     }
 
-    /// A metallic-roughness surface seen through the eyes of this model: what is not metal is matt,
-    /// the mirror part is a highlight of the exponent `2 / roughness^4 - 2`, which gives the
+    /// A metallic-roughness surface seen through the eyes of this model: what is not metal is matt, of
+    /// the metal three tenths (so that it is not black where it has no highlight), the mirror part is a highlight of the exponent `2 / roughness^4 - 2`, which gives the
     /// Blinn-Phong lobe its GGX width (Walter et al. 2007, section 5.2), a quarter of it for the angle
     /// of the mirrored ray; at most 1000.
     #[must_use]
     pub fn of_metallic_roughness(base_color: LinearRgb, metallic: f32, roughness: f32) -> Self {
-        let diffuse = base_color * (1.0 - metallic);
+        let diffuse = base_color * (1.0 - 0.7 * metallic);
         let alpha2 = (roughness * roughness).powi(2).max(1e-4);
         let exponent = (0.25 * (2.0 / alpha2 - 2.0)).clamp(1.0, 1000.0);
         let mirror = LinearRgb::splat(0.04).lerp(base_color, metallic);
