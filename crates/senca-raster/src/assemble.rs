@@ -2,7 +2,7 @@
 
 use crate::api::{Counters, Interpolation, MAX_VARYINGS, Primitives, State};
 use crate::clip::Polygon;
-use crate::setup::{ScreenMap, ScreenVertex, Setup, SetupState, UNPROJECTED, double_area, is_culled};
+use crate::setup::{Plane, ScreenMap, ScreenVertex, Setup, SetupState, UNPROJECTED, double_area, is_culled};
 use senca_math::glam::Vec4;
 
 /// Number of vertices a draw may refer to: those with a position and all their varyings; 0 when a
@@ -20,42 +20,45 @@ pub(crate) fn varyings_of<'a>(p: &Primitives<'a>, i: u32) -> &'a [f32] {
     &p.varyings[i as usize * p.stride..][..p.stride]
 }
 
-/// Varyings of a triangle in the order of its set-up: those of corner 0, and what corners 1 and 2 add.
+/// Varyings of a triangle, ready to be interpolated.
+///
+/// Where weights are linear on the screen, each varying is a [`Plane`]: constant, change in x, change
+/// in y. Under perspective it is the value at corner 0 and what corners 1 and 2 add.
 #[derive(Clone, Debug)]
 pub(crate) struct TriangleVaryings {
     pub(crate) count: usize,
-    pub(crate) base: [f32; MAX_VARYINGS],
-    pub(crate) d1: [f32; MAX_VARYINGS],
-    pub(crate) d2: [f32; MAX_VARYINGS],
+    pub(crate) terms: [[f32; 3]; MAX_VARYINGS],
 }
 
 impl Default for TriangleVaryings {
     fn default() -> Self {
-        Self { count: 0, base: [0.0; MAX_VARYINGS], d1: [0.0; MAX_VARYINGS], d2: [0.0; MAX_VARYINGS] }
+        Self { count: 0, terms: [[0.0; 3]; MAX_VARYINGS] }
     }
 }
 
 impl TriangleVaryings {
     /// From the varyings of the three corners as submitted.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, corners: [&[f32]; 3], swapped: bool, interpolation: Interpolation) {
+    pub(crate) fn set(&mut self, corners: [&[f32]; 3], setup: &Setup, interpolation: Interpolation) {
         let [c0, c1, c2] = match interpolation {
             Interpolation::FlatFirst => [corners[0]; 3],
             Interpolation::FlatLast => [corners[2]; 3],
-            _ if swapped => [corners[0], corners[2], corners[1]],
+            _ if setup.swapped => [corners[0], corners[2], corners[1]],
             _ => corners,
         };
         self.count = c0.len();
-        for (k, ((&a, &b), &c)) in c0.iter().zip(c1).zip(c2).enumerate().take(MAX_VARYINGS) {
-            self.base[k] = a;
-            self.d1[k] = b - a;
-            self.d2[k] = c - a;
+        for (terms, ((&a, &b), &c)) in self.terms.iter_mut().zip(c0.iter().zip(c1).zip(c2)) {
+            *terms = [a, b - a, c - a];
+            if setup.affine {
+                let plane = Plane::combine(a, b - a, &setup.b1, c - a, &setup.b2);
+                *terms = [plane.c, plane.dx, plane.dy];
+            }
         }
     }
 
-    /// Varying `k` at weights of corners 1 and 2.
-    pub(crate) fn at(&self, k: usize, b1: f32, b2: f32) -> f32 {
-        (self.base[k] + b1 * self.d1[k]) + b2 * self.d2[k]
+    /// Varying `k` at a pixel, `fx`, `fy` from the reference, with the weights there.
+    pub(crate) fn at(&self, k: usize, affine: bool, [fx, fy]: [f32; 2], [b1, b2, _]: [f32; 3]) -> f32 {
+        let [a, b, c] = self.terms[k];
+        if affine { (a + c * fy) + b * fx } else { (a + b1 * b) + b2 * c }
     }
 }
 
@@ -134,7 +137,7 @@ pub(crate) fn for_each_triangle(
                 return;
             }
             let setup = Setup::new(screen, area, &setup_state);
-            varyings.set(values, setup.swapped, state.interpolation);
+            varyings.set(values, &setup, state.interpolation);
             counters.drawn += 1;
             emit(&setup, &varyings, p.ids.of(n), counters);
         };

@@ -69,6 +69,12 @@ impl BinInput<'_> {
     pub(crate) fn vertex(&self, i: u32) -> Option<ScreenVertex> {
         self.vertices.get((i as usize).wrapping_sub(self.first_vertex)).copied()
     }
+
+    /// Projected corner `i`, which is there.
+    #[inline(always)]
+    pub(crate) fn projected(&self, i: u32) -> ScreenVertex {
+        self.vertex(i).unwrap_or_default()
+    }
 }
 
 impl Run {

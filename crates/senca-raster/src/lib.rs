@@ -5,6 +5,7 @@
 
 mod api;
 mod assemble;
+mod batch;
 mod bin;
 mod blend;
 pub mod clip;

@@ -46,11 +46,11 @@ pub(crate) fn draw_lines(
         let line = Line::new(&map, clip, [t0, t1], state);
         line.walk(state.line_width, |x, y, depth, t| {
             sink.values.count = lines.stride;
-            for (k, value) in sink.values.base.iter_mut().enumerate().take(lines.stride) {
-                *value = match state.interpolation {
-                    Interpolation::FlatFirst => values[0][k],
-                    Interpolation::FlatLast => values[1][k],
-                    _ => values[0][k] + t * (values[1][k] - values[0][k]),
+            for (k, terms) in sink.values.terms.iter_mut().enumerate().take(lines.stride) {
+                *terms = match state.interpolation {
+                    Interpolation::FlatFirst => [values[0][k], 0.0, 0.0],
+                    Interpolation::FlatLast => [values[1][k], 0.0, 0.0],
+                    _ => [values[0][k] + t * (values[1][k] - values[0][k]), 0.0, 0.0],
                 };
             }
             sink.fragment(x, y, depth);
@@ -83,7 +83,9 @@ pub(crate) fn draw_points(
         sink.id = points.ids.of(n);
         let values = varyings_of(points, index);
         sink.values.count = values.len();
-        sink.values.base[..values.len()].copy_from_slice(values);
+        for (terms, &value) in sink.values.terms.iter_mut().zip(values) {
+            *terms = [value, 0.0, 0.0];
+        }
         sink.square(map.project_clipped(clip), state.point_size);
     }
     sink.counters
@@ -227,8 +229,8 @@ impl<'a, 't> Sink<'a, 't> {
     fn shade(&mut self, x: i32, y: i32, depth: f32) -> Option<[f32; 4]> {
         let lane = ((y & 1) * 8 + (x & 7)) as usize;
         let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
-        for (plane, &value) in varyings.iter_mut().zip(&self.values.base).take(self.values.count) {
-            *plane = [value; LANES];
+        for (plane, terms) in varyings.iter_mut().zip(&self.values.terms).take(self.values.count) {
+            *plane = [terms[0]; LANES];
         }
         let fragments = Fragments {
             x: (x & !7) as u32,

@@ -176,8 +176,9 @@ impl Plane {
         (self.c + self.dy * fy) + self.dx * fx
     }
 
+    /// `base + a * pa + b * pb`.
     #[inline(always)]
-    fn combine(base: f32, a: f32, pa: &Self, b: f32, pb: &Self) -> Self {
+    pub(crate) fn combine(base: f32, a: f32, pa: &Self, b: f32, pb: &Self) -> Self {
         Self { c: base + (a * pa.c + b * pb.c), dx: a * pa.dx + b * pb.dx, dy: a * pa.dy + b * pb.dy }
     }
 

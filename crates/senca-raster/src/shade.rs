@@ -13,33 +13,23 @@ pub(crate) fn interpolate(
 ) {
     for lane in 0..LANES {
         let (x, y) = (fx + (lane % 8) as f32, fy + (lane / 8) as f32);
-        let [b1, b2, _] = setup.weights(x, y);
+        let weights = setup.weights(x, y);
         for (k, plane) in out.iter_mut().enumerate().take(varyings.count) {
-            plane[lane] = varyings.at(k, b1, b2);
+            plane[lane] = varyings.at(k, setup.affine, [x, y], weights);
         }
     }
 }
 
-/// Change of the weights of corners 1 and 2 per pixel in x and in y: `[[b1x, b2x], [b1y, b2y]]`.
-pub(crate) fn weight_derivatives(setup: &Setup, [b1, b2, w]: [f32; 3]) -> [[f32; 2]; 2] {
-    let (p1, p2, q) = (&setup.b1, &setup.b2, &setup.q);
+/// Change of varyings `k` and `k + 1` per pixel: `[[ux, vx], [uy, vy]]`.
+fn derivatives(setup: &Setup, varyings: &TriangleVaryings, k: usize, [b1, b2, w]: [f32; 3]) -> [[f32; 2]; 2] {
+    let (u, v) = (varyings.terms[k], varyings.terms[k + 1]);
     if setup.affine {
-        return [[p1.dx, p2.dx], [p1.dy, p2.dy]];
+        return [[u[1], v[1]], [u[2], v[2]]];
     }
-    [[(p1.dx - b1 * q.dx) * w, (p2.dx - b2 * q.dx) * w], [(p1.dy - b1 * q.dy) * w, (p2.dy - b2 * q.dy) * w]]
-}
-
-/// Change of texture coordinates per pixel: `[[ux, vx], [uy, vy]]`.
-fn coordinate_derivatives(
-    setup: &Setup,
-    varyings: &TriangleVaryings,
-    coords: usize,
-    weights: [f32; 3],
-) -> [[f32; 2]; 2] {
-    weight_derivatives(setup, weights).map(|[b1, b2]| {
-        let along = |k: usize| b1 * varyings.d1[k] + b2 * varyings.d2[k];
-        [along(coords), along(coords + 1)]
-    })
+    let (p1, p2, q) = (&setup.b1, &setup.b2, &setup.q);
+    let (b1x, b2x) = ((p1.dx - b1 * q.dx) * w, (p2.dx - b2 * q.dx) * w);
+    let (b1y, b2y) = ((p1.dy - b1 * q.dy) * w, (p2.dy - b2 * q.dy) * w);
+    [[b1x * u[1] + b2x * u[2], b1x * v[1] + b2x * v[2]], [b1y * u[1] + b2y * u[2], b1y * v[1] + b2y * v[2]]]
 }
 
 /// Fills `out` for the lanes of `fragments`.
@@ -85,7 +75,6 @@ fn texture_at(
 ) -> [f32; 4] {
     let k = unit.coords.min(crate::api::MAX_VARYINGS - 2);
     let weights = setup.weights(fx, fy);
-    let uv = [varyings.at(k, weights[0], weights[1]), varyings.at(k + 1, weights[0], weights[1])];
-    let derivatives = coordinate_derivatives(setup, varyings, k, weights);
-    unit.sampler.sample(unit.texture, uv, derivatives)
+    let uv = [k, k + 1].map(|k| varyings.at(k, setup.affine, [fx, fy], weights));
+    unit.sampler.sample(unit.texture, uv, derivatives(setup, varyings, k, weights))
 }

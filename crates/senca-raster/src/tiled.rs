@@ -1,10 +1,13 @@
 //! The tiled rasterizer: project, bin, then draw tile by tile on as many threads as wanted.
 
-use crate::api::{Compare, Counters, Primitives, Rasterizer, Shading, State};
-use crate::assemble::{TriangleVaryings, varyings_of, vertex_count};
+use crate::api::{
+    Compare, Counters, Interpolation, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shading, State,
+};
+use crate::assemble::vertex_count;
+use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE};
-use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw};
-use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState, double_area};
+use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
+use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::target::{Clear, Target};
 use crate::tile::{Band, ColorFormat, TileBuffer, bands};
 use fearless_simd::{Level, Simd, dispatch};
@@ -32,7 +35,7 @@ pub struct TiledRasterizer {
     settings: TiledSettings,
     vertices: Vec<ScreenVertex>,
     runs: Vec<Run>,
-    buffers: Vec<TileBuffer>,
+    scratch: Vec<Scratch>,
 }
 
 impl TiledRasterizer {
@@ -94,23 +97,9 @@ impl Rasterizer for TiledRasterizer {
         });
         let mut counters = Counters::default();
         filled.into_iter().for_each(|c| counters += c);
-        let pass = Pass {
-            map: &map,
-            state,
-            setup: SetupState::new(state),
-            shading,
-            clear,
-            format: ColorFormat::of(target),
-            has_depth: target.depth.is_some(),
-            has_ids: target.ids.is_some(),
-            writes_depth: target.depth.is_some() && state.depth_write,
-            hides_farther: target.depth.is_some()
-                && matches!(state.depth_test, Compare::Less | Compare::LessEqual),
-            color: ColorPath::of(shading, ColorFormat::of(target), triangles.stride),
-            interpolation: state.interpolation,
-        };
+        let pass = pass(target, triangles, state, shading, &map, clear);
         let frame = Frame { input: &input, runs: &self.runs[..runs], pass: &pass };
-        for c in frame.draw(target, threads, &mut self.buffers, self.settings.level) {
+        for c in frame.draw(target, threads, &mut self.scratch, self.settings.level) {
             counters.tested += c.tested;
             counters.passed += c.passed;
             counters.shaded += c.shaded;
@@ -136,6 +125,37 @@ impl Rasterizer for TiledRasterizer {
         shading: &Shading<'_>,
     ) -> Counters {
         crate::lines::draw_points(target, points, state, shading)
+    }
+}
+
+/// What the tiles need to know of a draw.
+fn pass<'a>(
+    target: &Target<'_>,
+    triangles: &Primitives<'_>,
+    state: &'a State,
+    shading: &'a Shading<'a>,
+    map: &'a ScreenMap,
+    clear: Option<Clear>,
+) -> Pass<'a> {
+    let (has_depth, format) = (target.depth.is_some(), ColorFormat::of(target));
+    let color = ColorPath::of(shading, format);
+    let custom = color == ColorPath::Plain;
+    let hides_farther = has_depth && matches!(state.depth_test, Compare::Less | Compare::LessEqual);
+    Pass {
+        map,
+        state,
+        setup: SetupState::new(state),
+        shading,
+        clear,
+        format,
+        has_depth,
+        has_ids: target.ids.is_some(),
+        writes_depth: has_depth && state.depth_write,
+        hides_farther,
+        lowers_farthest: hides_farther && state.depth_write && !custom,
+        needs_depth: has_depth || custom,
+        color,
+        slots: slots(shading, color, triangles.stride),
     }
 }
 
@@ -171,7 +191,7 @@ impl Frame<'_> {
         &self,
         target: &mut Target<'_>,
         threads: usize,
-        buffers: &mut Vec<TileBuffer>,
+        buffers: &mut Vec<Scratch>,
         level: Level,
     ) -> Vec<FragmentCounts> {
         let columns = self.input.tiles[0];
@@ -185,9 +205,15 @@ impl Frame<'_> {
             .collect();
         work.sort_by_key(|w| std::cmp::Reverse(w.0));
         let spare = Mutex::new(std::mem::take(buffers));
+        let pass = self.pass;
+        let fast = pass.format == ColorFormat::Rgba8 && pass.state.blend.is_none() && !pass.has_ids;
         let counts = share(threads, work, |(_, mut band)| {
-            let mut buffer = lock(&spare).pop().unwrap_or_default();
-            let counts = dispatch!(level, simd => self.draw_band(simd, &mut band, &mut buffer));
+            let mut buffer: Scratch = lock(&spare).pop().unwrap_or_default();
+            let counts = if fast {
+                dispatch!(level, simd => self.draw_band::<_, true>(simd, &mut band, &mut buffer))
+            } else {
+                dispatch!(level, simd => self.draw_band::<_, false>(simd, &mut band, &mut buffer))
+            };
             lock(&spare).push(buffer);
             counts
         });
@@ -196,55 +222,104 @@ impl Frame<'_> {
     }
 
     #[inline(always)]
-    fn draw_band<S: Simd>(&self, simd: S, band: &mut Band<'_>, buffer: &mut TileBuffer) -> FragmentCounts {
+    fn draw_band<S: Simd, const FAST: bool>(
+        &self,
+        simd: S,
+        band: &mut Band<'_>,
+        scratch: &mut Scratch,
+    ) -> FragmentCounts {
         let mut counts = FragmentCounts::default();
-        let mut varyings = TriangleVaryings::default();
         let clear: Option<&Clear> = self.pass.clear.as_ref();
         for column in 0..self.input.tiles[0] {
             let tile = band.row * self.input.tiles[0] + column;
-            let (x, y) = (column * TILE, band.row * TILE);
-            let whole = Bounds { x0: x as i32, y0: y as i32, x1: (x + TILE) as i32, y1: (y + TILE) as i32 };
+            let (x, y) = ((column * TILE) as i32, (band.row * TILE) as i32);
+            let whole = Bounds { x0: x, y0: y, x1: x + TILE as i32, y1: y + TILE as i32 };
             let bounds = whole.intersect(self.pass.map.bounds);
-            let mut draw = TileDraw {
+            let mut draw = TileDraw::<FAST> {
                 pass: self.pass,
                 band,
-                buffer,
-                x: x as i32,
-                y: y as i32,
+                buffer: &mut scratch.tile,
+                batch: &mut scratch.batch,
+                tile: [x, y],
                 bounds,
                 partial: bounds != whole,
                 counts,
-                varyings,
             };
             for run in self.runs {
                 self.draw_run(simd, &mut draw, run, tile);
             }
-            (counts, varyings) = (draw.counts, draw.varyings);
-            buffer.store(band, x, clear, self.pass.writes_depth);
+            draw.flush(simd);
+            counts = draw.counts;
+            scratch.tile.store(band, x as usize, clear, self.pass.writes_depth);
         }
         counts
     }
 
     #[inline(always)]
-    fn draw_run<S: Simd>(&self, simd: S, draw: &mut TileDraw<'_, '_>, run: &Run, tile: usize) {
-        let p = self.input.primitives;
+    fn draw_run<S: Simd, const FAST: bool>(
+        &self,
+        simd: S,
+        draw: &mut TileDraw<'_, '_, FAST>,
+        run: &Run,
+        tile: usize,
+    ) {
         for reference in run.of_tile(tile) {
-            let (v, corners, n) = match reference {
-                Reference::Triangle(n) => {
-                    let index = [p.indices[3 * n], p.indices[3 * n + 1], p.indices[3 * n + 2]];
-                    let v = index.map(|i| self.input.vertex(i).unwrap_or_default());
-                    (v, index.map(|i| varyings_of(p, i)), n)
-                }
-                Reference::Piece(k) => {
-                    let piece = run.pieces[k];
-                    let at =
-                        |c: usize| &run.piece_varyings[piece.varyings as usize + c * p.stride..][..p.stride];
-                    (piece.v, [at(0), at(1), at(2)], piece.triangle as usize)
-                }
-            };
-            draw.triangle(simd, v, double_area(&v), corners, p.ids.of(n));
+            match reference {
+                Reference::Triangle(n) => self.fetch(draw.batch, n),
+                Reference::Piece(k) => self.fetch_piece(draw.batch, run, k),
+            }
+            if draw.batch.len == LANES {
+                draw.flush(simd);
+            }
         }
     }
+
+    /// Puts triangle `n` into the batch.
+    #[inline(always)]
+    fn fetch(&self, batch: &mut Batch, n: usize) {
+        let p = self.input.primitives;
+        let Some(&[a, b, c]) = p.indices.get(3 * n..).and_then(<[u32]>::first_chunk::<3>) else { return };
+        let index = [a, b, c];
+        let v = [self.input.projected(a), self.input.projected(b), self.input.projected(c)];
+        let lane = batch.push(&v, p.ids.of(n));
+        for k in 0..3 {
+            let from = match self.pass.state.interpolation {
+                Interpolation::FlatFirst => index[0],
+                Interpolation::FlatLast => index[2],
+                _ => index[k],
+            };
+            let values = p.varyings.get(from as usize * p.stride..).unwrap_or(&[]);
+            for (slot, &varying) in self.pass.slots.iter().enumerate() {
+                batch.values[slot % MAX_VARYINGS][k][lane] = at_or_zero(values, varying, p.stride);
+            }
+        }
+    }
+
+    /// Puts a piece of a clipped triangle into the batch.
+    #[inline(never)]
+    fn fetch_piece(&self, batch: &mut Batch, run: &Run, k: usize) {
+        let (p, piece) = (self.input.primitives, run.pieces[k]);
+        let lane = batch.push(&piece.v, p.ids.of(piece.triangle as usize));
+        for c in 0..3 {
+            let values = &run.piece_varyings[piece.varyings as usize + c * p.stride..];
+            for (slot, &varying) in self.pass.slots.iter().enumerate() {
+                batch.values[slot % MAX_VARYINGS][c][lane] = at_or_zero(values, varying, p.stride);
+            }
+        }
+    }
+}
+
+/// Varying `k` of a vertex whose varyings begin `values`; 0 when it has not that many.
+#[inline(always)]
+fn at_or_zero(values: &[f32], k: usize, stride: usize) -> f32 {
+    if k < stride { values.get(k).copied().unwrap_or(0.0) } else { 0.0 }
+}
+
+/// Memory of one thread.
+#[derive(Debug, Default)]
+struct Scratch {
+    tile: TileBuffer,
+    batch: Batch,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {

@@ -48,11 +48,13 @@ mod specular_glossiness;
 mod texture;
 mod topology;
 mod uri;
+mod write;
 
 #[cfg(test)]
 mod tests;
 
 use document::Document;
+pub use write::{WriteSettings, write_glb, write_gltf};
 
 /// Extensions that are read.
 const KNOWN_EXTENSIONS: [&str; 9] = [

@@ -1,8 +1,10 @@
 //! Small files made here, with what must come out of them.
 
 mod hostile;
+mod materials;
 mod meshes;
 mod nodes;
+mod round_trip;
 
 use std::collections::BTreeMap;
 
