@@ -21,6 +21,8 @@ mod mesh_check;
 mod node;
 mod normals;
 mod patch_converter;
+mod pose;
+mod sample;
 mod scene;
 mod shape;
 mod tessellate;
@@ -46,6 +48,8 @@ pub use normals::{
     polygon_normal_1991, polygon_normals_1991,
 };
 pub use patch_converter::{PatchConversion, VertexSearch, patch_to_polygons};
+pub use pose::posed_mesh;
+pub use sample::ChannelValue;
 pub use scene::{Background, Geometry, Instance, Scene, SceneError, Warning};
 pub use senca_math as math;
 pub use shape::{BezierPatch, NurbsSurface, Shape};
