@@ -5,6 +5,7 @@
 //! takes memory out of proportion to its input. Every writer fills a buffer; [`write_file`] puts it
 //! in place at once or not at all.
 
+pub mod classic;
 mod error;
 mod files;
 pub mod gltf;

@@ -4,8 +4,34 @@
 //! [`glam`]'s, which multiplies column vectors from the left: a matrix that takes world points to
 //! view points is called `view_from_world`, and `clip_from_view * view_from_world` checks itself.
 //! Where a book prints row vectors, the printing routine transposes on the way out.
+//!
+//! | subject | modules |
+//! |---|---|
+//! | maps and frames | [`transform`], [`frame`], [`projective`], [`row_matrix`] |
+//! | what cameras see | [`view`], [`view_file`], [`device`] |
+//! | flat things | [`mod@line`], [`plane`], [`polygon`], [`ray`], [`aabb`] |
+//! | curved things | [`bezier`], [`nurbs`], [`roots`] |
+//! | pictures | [`mod@color`], [`hls`], [`mod@image`] |
+//!
+//! From the scene to a pixel, and back:
+//!
+//! ```
+//! use senca_math::glam::DVec3;
+//! use senca_math::{DeviceMap, View, pixel_center};
+//!
+//! let device = DeviceMap::to_pixels(640, 480)?;
+//! let camera = View::look_at(DVec3::new(3.0, 2.0, 5.0), DVec3::ZERO, DVec3::Y)?;
+//! let view = View::perspective(&camera, 0.8, device.aspect(), 0.1, None)?;
+//!
+//! let seen = view.device_from_world(&device, DVec3::ZERO).ok_or("behind the eye")?;
+//! assert!((seen.truncate() - DVec3::new(320.0, 240.0, 0.0).truncate()).length() < 1e-9);
+//! let ray = view.ray_through(&device, pixel_center(320, 240)).ok_or("too large")?;
+//! assert!(ray.direction.dot(DVec3::new(-3.0, -2.0, -5.0).normalize()) > 0.999);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod aabb;
+pub mod bezier;
 pub mod color;
 pub mod conventions;
 pub mod device;
@@ -13,10 +39,12 @@ pub mod frame;
 pub mod hls;
 pub mod image;
 pub mod line;
+pub mod nurbs;
 pub mod plane;
 pub mod polygon;
 pub mod projective;
 pub mod ray;
+pub mod roots;
 pub mod row_matrix;
 pub mod transform;
 pub mod view;
@@ -26,6 +54,7 @@ pub mod view_file;
 mod test_support;
 
 pub use aabb::Aabb;
+pub use bezier::{BicubicPatch, Continuity, CubicCurve, PatchEdge, Seam, SurfacePoint};
 pub use color::{LinearRgb, Srgb8};
 pub use device::{DeviceError, DeviceMap, Rect, pixel_center};
 pub use frame::{Orthonormality, axes_from_z_and_up, orthonormality};
@@ -33,10 +62,13 @@ pub use glam;
 pub use hls::Hls;
 pub use image::Image;
 pub use line::Line2;
+pub use nurbs::{BezierPiece, KnotVector, NurbsCurve, NurbsError, NurbsSurface, RationalPatch};
 pub use plane::{CANONICAL_VOLUME, CLIP_VOLUME, Plane};
+pub use polygon::{newell_normal, triangulate, triangulate_in_space, triangulate_with_holes};
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
 pub use ray::Ray;
-pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows};
+pub use roots::{Roots, cubic_roots, quadratic_roots, quartic_roots};
+pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows, named_json, named_text};
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{
     CentralByNormal, Lens, LookAtCamera, Normalization1991, ParallelByNormal, View, View1991, ViewError,

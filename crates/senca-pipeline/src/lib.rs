@@ -12,6 +12,8 @@ mod shade;
 mod single_pass;
 pub mod stages;
 mod surface;
+#[cfg(test)]
+mod test_support;
 mod transformed;
 mod visibility;
 

@@ -16,6 +16,7 @@ pub(crate) fn vertex_count(p: &Primitives<'_>) -> usize {
 }
 
 /// Varyings of vertex `i`; the number has been checked.
+#[inline(always)]
 pub(crate) fn varyings_of<'a>(p: &Primitives<'a>, i: u32) -> &'a [f32] {
     &p.varyings[i as usize * p.stride..][..p.stride]
 }

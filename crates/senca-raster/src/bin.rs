@@ -27,23 +27,39 @@ pub(crate) struct Piece {
     pub(crate) varyings: u32,
 }
 
-/// What a reference in a tile's list stands for.
-pub(crate) enum Reference {
-    /// Triangle of that number.
-    Triangle(usize),
-    /// Piece of that number within the run.
-    Piece(usize),
+/// A triangle in a tile's list. Its corners are repeated here so that drawing, which meets triangles
+/// in another order than they were submitted in, reads one stream instead of two.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reference {
+    /// Numbers of the corners.
+    pub(crate) corners: [u32; 3],
+    /// Number of the triangle, or, with [`CUT`], of the piece within the run.
+    number: u32,
+}
+
+impl Reference {
+    /// Number of the piece this stands for, if it is one.
+    #[inline(always)]
+    pub(crate) fn piece(&self) -> Option<usize> {
+        (self.number & CUT != 0).then_some((self.number & !CUT) as usize)
+    }
+
+    /// Number of the triangle, if it is not a piece.
+    #[inline(always)]
+    pub(crate) fn triangle(&self) -> usize {
+        self.number as usize
+    }
 }
 
 /// One run of triangles, binned.
 #[derive(Debug, Default)]
 pub(crate) struct Run {
     /// References, grouped by tile.
-    references: Vec<u32>,
+    references: Vec<Reference>,
     /// Where the group of each tile begins; one more at the end.
     starts: Vec<u32>,
     /// Reference and the tiles its bounding box meets: first and last column and row.
-    boxes: Vec<(u32, [u16; 4])>,
+    boxes: Vec<(Reference, [u16; 4])>,
     pub(crate) pieces: Vec<Piece>,
     pub(crate) piece_varyings: Vec<f32>,
     pub(crate) counters: Counters,
@@ -79,15 +95,11 @@ impl BinInput<'_> {
 
 impl Run {
     /// References of a tile, in order of submission.
-    pub(crate) fn of_tile(&self, tile: usize) -> impl Iterator<Item = Reference> {
-        let group = match (self.starts.get(tile), self.starts.get(tile + 1)) {
+    pub(crate) fn of_tile(&self, tile: usize) -> &[Reference] {
+        match (self.starts.get(tile), self.starts.get(tile + 1)) {
             (Some(&from), Some(&to)) => &self.references[from as usize..to as usize],
             _ => &[],
-        };
-        group.iter().map(|&r| match r & CUT {
-            0 => Reference::Triangle(r as usize),
-            _ => Reference::Piece((r & !CUT) as usize),
-        })
+        }
     }
 
     /// How many references a row of tiles has.
@@ -121,14 +133,15 @@ impl Run {
             return;
         };
         if a.x != i32::MIN && b.x != i32::MIN && c.x != i32::MIN {
-            self.add_screen(input, n as u32, [a, b, c]);
+            let corners = [index[0], index[1], index[2]];
+            self.add_screen(input, Reference { corners, number: n as u32 }, [a, b, c]);
         } else {
             self.add_clipped(input, n, [a, b, c]);
         }
     }
 
     #[inline(always)]
-    fn add_screen(&mut self, input: &BinInput<'_>, reference: u32, v: [ScreenVertex; 3]) -> bool {
+    fn add_screen(&mut self, input: &BinInput<'_>, reference: Reference, v: [ScreenVertex; 3]) -> bool {
         if is_culled(double_area(&v), input.cull) {
             self.counters.culled += 1;
             return false;
@@ -163,7 +176,7 @@ impl Run {
             let corners = fan.map(|k| polygon.vertices()[k]);
             let v = corners.map(|c| input.map.project_clipped(c.position));
             let piece = self.pieces.len() as u32;
-            if !self.add_screen(input, piece | CUT, v) {
+            if !self.add_screen(input, Reference { corners: index, number: piece | CUT }, v) {
                 continue;
             }
             let varyings = self.piece_varyings.len() as u32;
@@ -183,7 +196,7 @@ impl Run {
             *start = sum;
         }
         self.references.clear();
-        self.references.resize(sum as usize, 0);
+        self.references.resize(sum as usize, Reference::default());
         // Backwards, so that each group's start ends where it belongs.
         for &(reference, [x0, y0, x1, y1]) in self.boxes.iter().rev() {
             for y in y0..=y1 {

@@ -324,9 +324,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             if self.partial {
                 inside &= self.within_bounds(simd, bx * 8, y);
             }
-            if inside.any_true() {
-                self.vector(simd, place, &row, inside, bx);
-            }
+            self.vector(simd, place, &row, inside, bx);
         }
     }
 
@@ -545,10 +543,15 @@ fn colors<S: Simd>(simd: S, b: &Batch, lane: usize, first: usize, alpha: bool, a
 /// Which lanes of `new` pass against `stored`.
 #[inline(always)]
 fn compare<S: Simd>(simd: S, test: Compare, new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+    // The usual ones first: a predicted branch instead of a jump through a table.
+    if test == Compare::Less {
+        return new.simd_lt(stored);
+    }
+    if test == Compare::LessEqual {
+        return new.simd_le(stored);
+    }
     match test {
-        Compare::Less => new.simd_lt(stored),
-        Compare::LessEqual => new.simd_le(stored),
-        Compare::Never => mask32x16::splat(simd, false),
+        Compare::Never | Compare::Less | Compare::LessEqual => mask32x16::splat(simd, false),
         Compare::Equal => new.simd_eq(stored),
         Compare::Greater => new.simd_gt(stored),
         Compare::NotEqual => new.simd_ne(stored),

@@ -180,40 +180,68 @@ impl TileBuffer {
         clear: Option<&Clear>,
         depth_written: bool,
     ) {
-        for block in 0..BLOCKS * BLOCKS {
-            let present = self.present >> block & 1 == 1;
-            if present {
-                self.store_block(band, tile_x, block, depth_written || clear.is_some());
-            } else if let Some(clear) = clear {
-                clear_block(band, tile_x, block, clear);
-            }
+        let (width, height) = (band.width, band.height);
+        let present = std::mem::take(&mut self.present);
+        if present == 0 && clear.is_none() {
+            return;
         }
-        self.present = 0;
+        let rows = Rows { width, height, tile_x, present };
+        match (&mut band.color, clear.map(|c| c.color)) {
+            (Some(ColorPlane::Rgba8(p)), clear) => {
+                let clear = clear.flatten().map(rgba8_from_rgba);
+                rows.store(p, clear, |block, row| eight(&self.rgba8[block], row).map(u32::to_le_bytes));
+            }
+            (Some(ColorPlane::Rgba32F(p)), clear) => rows.store(p, clear.flatten(), |block, row| {
+                let at = |k: usize, x: usize| self.rgba[k][block].as_flattened()[row + x];
+                std::array::from_fn(|x| [at(0, x), at(1, x), at(2, x), at(3, x)])
+            }),
+            (None, _) => {}
+        }
+        if let Some(p) = band.depth.as_mut().filter(|_| depth_written || clear.is_some()) {
+            rows.store(p, clear.and_then(|c| c.depth), |block, row| eight(&self.depth[block], row));
+        }
+        if let Some(p) = &mut band.ids {
+            rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block], row));
+        }
     }
+}
 
-    fn store_block(&self, band: &mut Band<'_>, tile_x: usize, block: usize, depth_written: bool) {
-        for (y, row) in block_rows(band, block) {
-            let range = row_range(band.width, tile_x, block, y);
-            match &mut band.color {
-                Some(ColorPlane::Rgba8(p)) => {
-                    for (to, from) in
-                        p[range.clone()].iter_mut().zip(&self.rgba8[block].as_flattened()[row * 8..])
-                    {
-                        *to = from.to_le_bytes();
-                    }
-                }
-                Some(ColorPlane::Rgba32F(p)) => {
-                    for (x, to) in p[range.clone()].iter_mut().enumerate() {
-                        *to = std::array::from_fn(|k| self.rgba[k][block].as_flattened()[row * 8 + x]);
-                    }
-                }
-                None => {}
+/// Eight pixels of a block, from number `first` on.
+#[inline(always)]
+fn eight<T: Copy>(block: &Block<T>, first: usize) -> [T; 8] {
+    let pair = &block[first / LANES % 4];
+    let half = first % LANES / 8 * 8;
+    std::array::from_fn(|x| pair[half + x])
+}
+
+/// The rows of a tile within its band.
+struct Rows {
+    width: usize,
+    height: usize,
+    tile_x: usize,
+    present: u64,
+}
+
+impl Rows {
+    /// Writes the blocks that are present, row by row of the target, and `clear` elsewhere.
+    /// `get` gives eight pixels of a block from one on.
+    #[inline(always)]
+    fn store<T: Copy>(&self, plane: &mut [T], clear: Option<T>, get: impl Fn(usize, usize) -> [T; 8]) {
+        let end = (self.tile_x + TILE).min(self.width);
+        for y in 0..self.height {
+            let row = &mut plane[y * self.width + self.tile_x..y * self.width + end];
+            let present = self.present >> (y / 8 * BLOCKS) & 255;
+            if present == 0 {
+                clear.into_iter().for_each(|v| row.fill(v));
+                continue;
             }
-            if let Some(p) = band.depth.as_mut().filter(|_| depth_written) {
-                store_row(&mut p[range.clone()], &self.depth[block].as_flattened()[row * 8..]);
-            }
-            if let Some(p) = &mut band.ids {
-                store_row(&mut p[range], &self.ids[block].as_flattened()[row * 8..]);
+            for (bx, to) in row.chunks_mut(8).enumerate() {
+                if present >> bx & 1 == 1 {
+                    let from = get(y / 8 * BLOCKS + bx, y % 8 * 8);
+                    store_row(to, &from);
+                } else if let Some(v) = clear {
+                    to.fill(v);
+                }
             }
         }
     }
@@ -236,26 +264,10 @@ fn fetch_plane<T: Copy>(to: &mut Block<T>, plane: &[T], band: &Band<'_>, tile_x:
     }
 }
 
-fn store_row<T: Copy>(to: &mut [T], from: &[T]) {
+#[inline(always)]
+fn store_row<T: Copy>(to: &mut [T], from: &[T; 8]) {
     match <&mut [T; 8]>::try_from(&mut *to) {
-        Ok(whole) => whole.copy_from_slice(&from[..8]),
+        Ok(whole) => *whole = *from,
         Err(_) => to.copy_from_slice(&from[..to.len()]),
-    }
-}
-
-fn clear_block(band: &mut Band<'_>, tile_x: usize, block: usize, clear: &Clear) {
-    for (y, _) in block_rows(band, block) {
-        let range = row_range(band.width, tile_x, block, y);
-        match (&mut band.color, clear.color) {
-            (Some(ColorPlane::Rgba8(p)), Some(rgba)) => p[range.clone()].fill(rgba8_from_rgba(rgba)),
-            (Some(ColorPlane::Rgba32F(p)), Some(rgba)) => p[range.clone()].fill(rgba),
-            _ => {}
-        }
-        if let (Some(p), Some(depth)) = (&mut band.depth, clear.depth) {
-            p[range.clone()].fill(depth);
-        }
-        if let (Some(p), Some(id)) = (&mut band.ids, clear.id) {
-            p[range].fill(id);
-        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::api::{
     Compare, Counters, Interpolation, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shading, State,
 };
-use crate::assemble::vertex_count;
+use crate::assemble::{varyings_of, vertex_count};
 use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE};
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
@@ -264,9 +264,9 @@ impl Frame<'_> {
         tile: usize,
     ) {
         for reference in run.of_tile(tile) {
-            match reference {
-                Reference::Triangle(n) => self.fetch(draw.batch, n),
-                Reference::Piece(k) => self.fetch_piece(draw.batch, run, k),
+            match reference.piece() {
+                None => self.fetch(draw.batch, reference),
+                Some(k) => self.fetch_piece(draw.batch, run, k),
             }
             if draw.batch.len == LANES {
                 draw.flush(simd);
@@ -274,23 +274,22 @@ impl Frame<'_> {
         }
     }
 
-    /// Puts triangle `n` into the batch.
+    /// Puts a triangle into the batch.
     #[inline(always)]
-    fn fetch(&self, batch: &mut Batch, n: usize) {
-        let p = self.input.primitives;
-        let Some(&[a, b, c]) = p.indices.get(3 * n..).and_then(<[u32]>::first_chunk::<3>) else { return };
-        let index = [a, b, c];
+    fn fetch(&self, batch: &mut Batch, reference: &Reference) {
+        let (p, [a, b, c]) = (self.input.primitives, reference.corners);
         let v = [self.input.projected(a), self.input.projected(b), self.input.projected(c)];
-        let lane = batch.push(&v, p.ids.of(n));
-        for k in 0..3 {
-            let from = match self.pass.state.interpolation {
-                Interpolation::FlatFirst => index[0],
-                Interpolation::FlatLast => index[2],
-                _ => index[k],
-            };
-            let values = p.varyings.get(from as usize * p.stride..).unwrap_or(&[]);
-            for (slot, &varying) in self.pass.slots.iter().enumerate() {
-                batch.values[slot % MAX_VARYINGS][k][lane] = at_or_zero(values, varying, p.stride);
+        let lane = batch.push(&v, p.ids.of(reference.triangle()));
+        let from = match self.pass.state.interpolation {
+            Interpolation::FlatFirst => [a; 3],
+            Interpolation::FlatLast => [c; 3],
+            _ => [a, b, c],
+        };
+        let values = from.map(|i| varyings_of(p, i));
+        for (slot, &varying) in self.pass.slots.iter().enumerate() {
+            let to = &mut batch.values[slot % MAX_VARYINGS];
+            for k in 0..3 {
+                to[k][lane] = values[k].get(varying).copied().unwrap_or(0.0);
             }
         }
     }
@@ -301,18 +300,12 @@ impl Frame<'_> {
         let (p, piece) = (self.input.primitives, run.pieces[k]);
         let lane = batch.push(&piece.v, p.ids.of(piece.triangle as usize));
         for c in 0..3 {
-            let values = &run.piece_varyings[piece.varyings as usize + c * p.stride..];
+            let values = &run.piece_varyings[piece.varyings as usize + c * p.stride..][..p.stride];
             for (slot, &varying) in self.pass.slots.iter().enumerate() {
-                batch.values[slot % MAX_VARYINGS][c][lane] = at_or_zero(values, varying, p.stride);
+                batch.values[slot % MAX_VARYINGS][c][lane] = values.get(varying).copied().unwrap_or(0.0);
             }
         }
     }
-}
-
-/// Varying `k` of a vertex whose varyings begin `values`; 0 when it has not that many.
-#[inline(always)]
-fn at_or_zero(values: &[f32], k: usize, stride: usize) -> f32 {
-    if k < stride { values.get(k).copied().unwrap_or(0.0) } else { 0.0 }
 }
 
 /// Memory of one thread.

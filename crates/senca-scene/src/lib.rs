@@ -30,6 +30,7 @@ mod tessellate;
 mod test_support;
 mod texture;
 mod topology;
+mod validate;
 
 pub use animation::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation};
 pub use camera::{Camera, Projection};

@@ -4,8 +4,8 @@ use senca_math::LinearRgb;
 use senca_math::glam::DMat4;
 
 use crate::{
-    Animation, Camera, CameraId, Fog, GeometryId, Light, LightId, Material, MaterialId, Node, NodeId, Shape,
-    Skin, Texture, TextureImage,
+    Animation, Camera, CameraId, Fog, GeometryId, Light, LightId, Material, MaterialId, MeshError, Node,
+    NodeId, Shape, Skin, Texture, TextureImage,
 };
 
 /// Everything there is to see. Entries name each other by typed index; a reader checks
@@ -88,7 +88,7 @@ pub struct Instance {
 }
 
 /// Why a scene does not hold together.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// An index names an entry that is not there.
     #[error("{what} names {kind} {index}, but there are only {count}")]
@@ -107,6 +107,32 @@ pub enum SceneError {
     NotATree {
         /// The node.
         node: u32,
+    },
+    /// A number is outside its range.
+    #[error("{what} is {value}, but must be {expected}")]
+    Number {
+        /// Whose number.
+        what: String,
+        /// What it is.
+        value: f64,
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// A mesh does not hold together.
+    #[error("{what}: {error}")]
+    Mesh {
+        /// Whose mesh.
+        what: String,
+        /// What is wrong with it.
+        error: MeshError,
+    },
+    /// Something else does not hold together.
+    #[error("{what}: {reason}")]
+    Invalid {
+        /// What.
+        what: String,
+        /// What is wrong and what would be right.
+        reason: String,
     },
 }
 

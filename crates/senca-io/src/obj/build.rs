@@ -30,7 +30,8 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
     for mut part in split(soup) {
         let material_of =
             |key: &SurfaceKey| key.material.as_ref().and_then(|name| materials.get(name).copied());
-        part.mesh.surfaces = part.keys.iter().map(|key| surface(key, material_of(key))).collect();
+        let named = part.keys.iter().zip(part.surface_names);
+        part.mesh.surfaces = named.map(|(key, name)| surface(name, key, material_of(key))).collect();
         let name = if part.name.is_empty() { scene.name.clone() } else { part.name };
         let shape = Shape::Mesh(part.mesh);
         let geometry = scene.add_geometry(Geometry { name: name.clone(), shape, material: None });
@@ -40,8 +41,8 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
     Ok(scene)
 }
 
-fn surface(key: &SurfaceKey, material: Option<MaterialId>) -> Surface {
-    Surface { name: key.group.clone(), material, smooth: key.smoothing != Smoothing::Off }
+fn surface(name: String, key: &SurfaceKey, material: Option<MaterialId>) -> Surface {
+    Surface { name, material, smooth: key.smoothing != Smoothing::Off }
 }
 
 /// Decodes colours; ones above 1 anywhere mean that they run to 255.
@@ -82,6 +83,7 @@ struct Part {
     name: String,
     mesh: Mesh,
     keys: Vec<SurfaceKey>,
+    surface_names: Vec<String>,
 }
 
 /// The objects that have faces, lines or dots.
@@ -94,7 +96,8 @@ fn split(mut soup: Soup) -> Vec<Part> {
     if let [object] = objects[..] {
         let keys = std::mem::take(&mut soup.surfaces);
         let name = std::mem::take(&mut soup.objects[object as usize]);
-        return vec![Part { name, mesh: whole_mesh(soup, &keys), keys }];
+        let surface_names = std::mem::take(&mut soup.surface_names);
+        return vec![Part { name, mesh: whole_mesh(soup, &keys), keys, surface_names }];
     }
     split_objects(&soup, &objects)
 }
@@ -147,8 +150,10 @@ fn split_objects(soup: &Soup, objects: &[u32]) -> Vec<Part> {
     let mut local_of_point = vec![NONE; soup.points.len()];
     let mut parts = Vec::with_capacity(objects.len());
     for (&object, content) in objects.iter().zip(&contents) {
-        let (mesh, keys) = part_mesh(soup, content, &mut local_of_point);
-        parts.push(Part { name: soup.objects[object as usize].clone(), mesh, keys });
+        let (mesh, surfaces) = part_mesh(soup, content, &mut local_of_point);
+        let keys = surfaces.iter().map(|&s| soup.surfaces[s as usize].clone()).collect();
+        let surface_names = surfaces.iter().map(|&s| soup.surface_names[s as usize].clone()).collect();
+        parts.push(Part { name: soup.objects[object as usize].clone(), mesh, keys, surface_names });
     }
     parts
 }
@@ -161,8 +166,8 @@ struct Content {
     dots: Vec<Corner>,
 }
 
-/// The mesh of one object. `local_of_point` is [`NONE`] throughout before and after.
-fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mesh, Vec<SurfaceKey>) {
+/// The mesh of one object, and the file's number of each of its surfaces. `local_of_point` is [`NONE`] throughout before and after.
+fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mesh, Vec<u32>) {
     // Number the points that are used, in their order in the file.
     let corners_of =
         |&(run, last): &(Run, u32)| corner_of(&soup.starts, run.first_face)..corner_of(&soup.starts, last);
@@ -181,14 +186,14 @@ fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mes
         corner.point = local_of_point[corner.point as usize];
         unifier.vertex(corner, class)
     };
-    let mut keys = Vec::new();
-    let mut key_numbers = HashMap::new();
+    let mut surfaces = Vec::new();
+    let mut surface_numbers = HashMap::new();
     let mut face = Vec::new();
     for &(run, last_face) in &content.runs {
         let key = &soup.surfaces[run.surface as usize];
-        let surface = *key_numbers.entry(run.surface).or_insert_with(|| {
-            keys.push(key.clone());
-            keys.len() as u32 - 1
+        let surface = *surface_numbers.entry(run.surface).or_insert_with(|| {
+            surfaces.push(run.surface);
+            surfaces.len() as u32 - 1
         });
         for f in run.first_face..last_face {
             face.clear();
@@ -203,7 +208,7 @@ fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mes
     mesh.vertices = unifier.into_vertices(&source, &|local| used[local as usize]);
     fill_missing_normals(&mut mesh);
     used.iter().for_each(|&point| local_of_point[point as usize] = NONE);
-    (mesh, keys)
+    (mesh, surfaces)
 }
 
 impl Soup {
