@@ -311,31 +311,39 @@ fn low<S: Simd>(simd: S, v: u32x16<S>) -> F<S> {
 
 #[inline(always)]
 fn gather<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> u32x16<S> {
-    let index: [i32; LANES] = index.to_array();
     let mut out = [0u32; LANES];
-    for k in 0..LANES {
-        out[k] = u32::from_le_bytes(texels.get(index[k] as usize).copied().unwrap_or_default());
-    }
+    gather_words(texels, &index.to_array(), &mut out);
     u32x16::load_array(simd, out)
 }
 
 /// The texels at `index` and at the next.
 #[inline(always)]
 fn gather_pairs<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> [u32x16<S>; 2] {
-    let index: [i32; LANES] = index.to_array();
-    let mut out = [[0u32; LANES]; 2];
-    for k in 0..LANES {
-        let from = index[k] as usize;
-        let [a, b] = match texels.get(from..from.wrapping_add(2)) {
-            Some(&[a, b]) => [a, b],
-            _ => [[0; 4]; 2],
-        };
-        let to = &mut out[k / 8];
-        to[k % 8 * 2] = u32::from_le_bytes(a);
-        to[k % 8 * 2 + 1] = u32::from_le_bytes(b);
-    }
-    let (a, b) = (u32x16::load_array(simd, out[0]), u32x16::load_array(simd, out[1]));
+    let mut out = [[[0u32; 2]; LANES / 2]; 2];
+    gather_word_pairs(texels, &index.to_array(), out.as_flattened_mut());
+    let a = u32x16::from_slice(simd, out[0].as_flattened());
+    let b = u32x16::from_slice(simd, out[1].as_flattened());
     [a.unzip_low(b), a.unzip_high(b)]
+}
+
+// The loops below go through memory on purpose: inlined into vector code, every index is taken out of
+// its register and every texel put into one, lane by lane, at twice the cost.
+
+#[inline(never)]
+fn gather_words(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [u32; LANES]) {
+    for (to, &i) in out.iter_mut().zip(index) {
+        *to = u32::from_le_bytes(texels.get(i as u32 as usize).copied().unwrap_or_default());
+    }
+}
+
+#[inline(never)]
+fn gather_word_pairs(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [[u32; 2]]) {
+    for (to, &i) in out.iter_mut().zip(index) {
+        let i = i as u32 as usize;
+        if let Some(&[a, b]) = texels.get(i..i + 2) {
+            *to = [u32::from_le_bytes(a), u32::from_le_bytes(b)];
+        }
+    }
 }
 
 #[inline(always)]

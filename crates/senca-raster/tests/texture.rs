@@ -118,9 +118,9 @@ fn footprints_are_averaged() {
     let sampler = Sampler::BILINEAR;
     let whole = sampler.footprint_mean(&texture, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], 1000);
     let level = &texture.levels()[0];
-    for k in 0..4 {
+    for (k, found) in whole.into_iter().enumerate() {
         let mean = (0..144).map(|i| level.texel(i % 12, i / 12)[k]).sum::<f32>() / 144.0;
-        assert!((whole[k] - mean).abs() < 1e-5);
+        assert!((found - mean).abs() < 1e-5);
     }
     let square = sampler.square_mean(&texture, [0.5, 0.5], [[1.0, 0.0], [0.0, 1.0]], 1000);
     assert!((0..4).all(|k| (square[k] - whole[k]).abs() < 1e-5));
