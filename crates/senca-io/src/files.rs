@@ -116,6 +116,11 @@ impl Files for Directory {
     }
 }
 
+/// File name without folder and extension.
+pub(crate) fn stem(name: &str) -> String {
+    Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
 /// Content of `path`, as long as it keeps to the limits.
 pub(crate) fn read_limited(path: &Path, limits: Limits) -> Result<Vec<u8>, ReadError> {
     let io = |source| ReadError::Io { path: path.to_owned(), source };

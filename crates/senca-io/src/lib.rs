@@ -5,10 +5,22 @@
 //! takes memory out of proportion to its input. Every writer fills a buffer; [`write_file`] puts it
 //! in place at once or not at all.
 
+pub mod classic;
 mod error;
 mod files;
+pub mod gltf;
+pub mod images;
+mod mtl;
+mod normals;
+pub mod obj;
 mod output;
+pub mod ply;
+pub mod stl;
+mod text;
+pub mod toml_scene;
+mod weld;
 
 pub use error::{Location, ReadError, WriteError};
+use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
 pub use output::write_file;

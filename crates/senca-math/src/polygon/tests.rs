@@ -77,6 +77,30 @@ fn concave_polygons_are_covered_in_both_orientations() {
 }
 
 #[test]
+fn quads_are_cut_at_the_corner_that_turns_inwards() {
+    let square = points(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    assert_eq!(triangulate(&square), [[0, 1, 2], [0, 2, 3]]);
+    let mut dart = points(&[[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]]);
+    for _ in 0..4 {
+        assert_covers(&dart, &triangulate(&dart), 4.0);
+        dart.rotate_left(1);
+    }
+    dart.reverse();
+    assert_covers(&dart, &triangulate(&dart), -4.0);
+}
+
+#[test]
+fn a_spiral_is_covered() {
+    let arm = |r: f64| {
+        (0..600).map(move |k| DVec2::from_angle(f64::from(k) * 0.1) * (1.0 + f64::from(k) * 0.05 + r))
+    };
+    let corners: Vec<_> = arm(0.5).chain(arm(0.0).collect::<Vec<_>>().into_iter().rev()).collect();
+    let triangles = triangulate(&corners);
+    assert_eq!(triangles.len(), corners.len() - 2);
+    assert_covers(&corners, &triangles, signed_area(&corners));
+}
+
+#[test]
 fn collinear_corners_are_all_used() {
     let corners = points(&[
         [0.0, 0.0],
@@ -162,7 +186,7 @@ fn polygons_in_space_keep_their_normal() {
 
 proptest! {
     #[test]
-    fn star_shaped_polygons_are_covered(radii in prop::collection::vec(0.1..5.0f64, 3..60)) {
+    fn star_shaped_polygons_are_covered(radii in prop::collection::vec(0.1..5.0f64, 3..400)) {
         let n = radii.len() as f64;
         let corners: Vec<_> = radii
             .iter()

@@ -1,0 +1,189 @@
+//! Materials (glTF 2.0, section 3.9) with their extensions.
+
+use senca_scene::math::LinearRgb;
+use senca_scene::math::glam::{Mat3, Vec2};
+use senca_scene::{AlphaMode, ColorSpace, Material, MetallicRoughness, Reflection, TextureId, TextureRef};
+
+use super::document::Document;
+use super::json;
+use super::specular_glossiness;
+use super::texture::Textures;
+
+/// Reads all materials, in the order of the file.
+pub(super) fn read_all<'d>(document: &'d Document<'_>, textures: &mut Textures<'d>) -> Vec<Material> {
+    let materials = document.root.materials.iter().enumerate();
+    materials
+        .map(|(i, json)| Reader { document, textures, place: format!("materials[{i}]") }.read(json))
+        .collect()
+}
+
+/// Reads one material.
+pub(super) struct Reader<'t, 'd> {
+    pub(super) document: &'d Document<'d>,
+    pub(super) textures: &'t mut Textures<'d>,
+    pub(super) place: String,
+}
+
+impl Reader<'_, '_> {
+    fn read(&mut self, json: &json::Material) -> Material {
+        let extensions = &json.extensions;
+        let reflection = match (&extensions.specular_glossiness, &json.pbr_metallic_roughness) {
+            (Some(json), _) => specular_glossiness::read(self, json),
+            (None, Some(json)) => self.metallic_roughness(json),
+            (None, None) => MetallicRoughness::default(),
+        };
+        let strength = extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength).unwrap_or(1.0);
+        let emission = self.color("emissiveFactor", json.emissive_factor, 0.0);
+        let [strength] = self.document.floats(&self.place, [strength.max(0.0)], [1.0]);
+        let mut material = Material {
+            name: json.name.clone(),
+            emission: emission * strength,
+            emission_texture: self.texture(
+                "emissiveTexture",
+                json.emissive_texture.as_ref(),
+                ColorSpace::Srgb,
+            ),
+            normal_texture: self.texture("normalTexture", json.normal_texture.as_ref(), ColorSpace::Linear),
+            occlusion_texture: self.texture(
+                "occlusionTexture",
+                json.occlusion_texture.as_ref(),
+                ColorSpace::Linear,
+            ),
+            alpha_mode: self.alpha_mode(json),
+            double_sided: json.double_sided,
+            unlit: extensions.unlit.is_some(),
+            ..Material::default()
+        };
+        if let Some(ior) = extensions.ior.as_ref().and_then(|i| i.ior) {
+            material.ior = self.ior(ior);
+        }
+        if let Some(json) = &extensions.transmission {
+            material.transmission = self.transmission(json, &reflection);
+        }
+        material.reflection = Reflection::MetallicRoughness(reflection);
+        material
+    }
+
+    fn metallic_roughness(&mut self, json: &json::MetallicRoughness) -> MetallicRoughness {
+        let (base_color, alpha) = self.color_alpha("baseColorFactor", json.base_color_factor);
+        let place = "pbrMetallicRoughness";
+        MetallicRoughness {
+            base_color,
+            alpha,
+            metallic: self.factor("metallicFactor", json.metallic_factor, 1.0),
+            roughness: self.factor("roughnessFactor", json.roughness_factor, 1.0),
+            base_color_texture: self.texture(
+                &format!("{place}.baseColorTexture"),
+                json.base_color_texture.as_ref(),
+                ColorSpace::Srgb,
+            ),
+            metallic_roughness_texture: self.texture(
+                &format!("{place}.metallicRoughnessTexture"),
+                json.metallic_roughness_texture.as_ref(),
+                ColorSpace::Linear,
+            ),
+        }
+    }
+
+    /// Light that goes through is coloured by the base colour; metal lets none through
+    /// (KHR_materials_transmission).
+    fn transmission(&mut self, json: &json::Transmission, reflection: &MetallicRoughness) -> LinearRgb {
+        if json.transmission_texture.is_some() {
+            let place = &self.place;
+            self.document.warn(format!("{place}: transmissionTexture is not read; its factor alone counts"));
+        }
+        let factor = self.factor("transmissionFactor", Some(json.transmission_factor), 0.0);
+        reflection.base_color * (factor * (1.0 - reflection.metallic))
+    }
+
+    /// 0 stands for a mirror without refraction, which an enormous index comes close to.
+    fn ior(&self, ior: f64) -> f32 {
+        if ior == 0.0 {
+            return 1e6;
+        }
+        if (1.0..1e6).contains(&ior) {
+            return ior as f32;
+        }
+        self.document
+            .warn(format!("{}: an index of refraction of {ior} is not possible; 1.5 is used", self.place));
+        1.5
+    }
+
+    fn alpha_mode(&self, json: &json::Material) -> AlphaMode {
+        match json.alpha_mode.as_deref() {
+            None | Some("OPAQUE") => AlphaMode::Opaque,
+            Some("MASK") => {
+                let cutoff = json.alpha_cutoff.unwrap_or(0.5).max(0.0);
+                let [cutoff] = self.document.floats(&self.place, [cutoff], [0.5]);
+                AlphaMode::Mask { cutoff }
+            }
+            Some("BLEND") => AlphaMode::Blend,
+            Some(other) => {
+                self.document
+                    .warn(format!("{}.alphaMode: {other:?} is not known; OPAQUE is used", self.place));
+                AlphaMode::Opaque
+            }
+        }
+    }
+
+    /// A factor in [0, 1].
+    pub(super) fn factor(&self, name: &str, value: Option<f64>, default: f32) -> f32 {
+        let Some(value) = value else { return default };
+        if !(0.0..=1.0).contains(&value) {
+            self.document.warn(format!("{}.{name}: {value} is outside of 0 to 1", self.place));
+        }
+        value.clamp(0.0, 1.0) as f32
+    }
+
+    /// A colour with components >= 0.
+    pub(super) fn color(&self, name: &str, value: Option<[f64; 3]>, default: f32) -> LinearRgb {
+        let Some(value) = value else { return LinearRgb::splat(default) };
+        let place = format!("{}.{name}", self.place);
+        LinearRgb::from_array(self.document.floats(&place, value.map(|v| v.max(0.0)), [default; 3]))
+    }
+
+    /// A colour and an alpha in [0, 1]; white and 1 when absent.
+    pub(super) fn color_alpha(&self, name: &str, value: Option<[f64; 4]>) -> (LinearRgb, f32) {
+        let Some([r, g, b, a]) = value else { return (LinearRgb::WHITE, 1.0) };
+        (self.color(name, Some([r, g, b]), 1.0), self.factor(name, Some(a), 1.0))
+    }
+
+    /// The use of a texture; `None` when there is none or its picture cannot be had.
+    pub(super) fn texture(
+        &mut self,
+        name: &str,
+        info: Option<&json::TextureInfo>,
+        space: ColorSpace,
+    ) -> Option<TextureRef> {
+        let info = info?;
+        let place = format!("{}.{name}", self.place);
+        let count = self.document.root.textures.len();
+        let index = self.document.index_or_warn(&format!("{place}.index"), info.index, "texture", count)?;
+        let transform = info.extensions.transform.as_ref();
+        let texcoord = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord).0;
+        if texcoord > 1 {
+            self.document
+                .warn(format!("{place}.texCoord: set {texcoord} is not read, only 0 and 1; left out"));
+            return None;
+        }
+        let texture = self.textures.get(self.document, index as usize, space)?;
+        let strength = info.scale.or(info.strength).unwrap_or(1.0);
+        let [strength] = self.document.floats(&place, [strength], [1.0]);
+        let uv_transform = transform.map_or(Mat3::IDENTITY, |t| uv_transform(self.document, &place, t));
+        Some(TextureRef { texture: TextureId(texture), texcoord: texcoord as u32, uv_transform, strength })
+    }
+}
+
+/// Scale, then rotate, then move (KHR_texture_transform).
+///
+/// The extension's text gives a matrix that turns one way and an example that turns the other. The
+/// example ("the lower left quadrant, rotated clockwise") agrees with the sentence that the picture
+/// turns clockwise and with what viewers do: u' = u cos + v sin, v' = v cos - u sin.
+fn uv_transform(document: &Document<'_>, place: &str, json: &json::TextureTransform) -> Mat3 {
+    let offset = document.floats(place, json.offset.unwrap_or([0.0; 2]), [0.0; 2]);
+    let scale = document.floats(place, json.scale.unwrap_or([1.0; 2]), [1.0; 2]);
+    let [rotation] = document.floats(place, [json.rotation], [0.0]);
+    Mat3::from_translation(Vec2::from_array(offset))
+        * Mat3::from_angle(-rotation)
+        * Mat3::from_scale(Vec2::from_array(scale))
+}

@@ -1,0 +1,159 @@
+//! Materials, textures and pictures.
+
+use senca_scene::math::LinearRgb;
+use senca_scene::math::glam::Vec3;
+use senca_scene::{
+    AlphaMode, Filter, ImageData, ImageId, Material, MetallicRoughness, Reflection, TextureId, Wrap,
+};
+use serde_json::json;
+
+use super::{Builder, Held, warnings};
+
+/// A picture of 2 x 2 texels as PNG.
+pub(super) fn png(texels: [[u8; 4]; 4]) -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, 2, 2);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(texels.as_flattened()).expect("texels");
+    writer.finish().expect("an end");
+    file
+}
+
+fn reflection(material: &Material) -> &MetallicRoughness {
+    match &material.reflection {
+        Reflection::MetallicRoughness(m) => m,
+        Reflection::Phong(p) => panic!("not metallic-roughness: {p:?}"),
+    }
+}
+
+#[test]
+fn an_empty_material_has_the_format_s_defaults() {
+    let mut file = Builder::new();
+    file.json["materials"] = json!([{"name": "plain"}]);
+    let scene = file.read();
+    let expected = Material {
+        name: "plain".to_owned(),
+        reflection: Reflection::MetallicRoughness(MetallicRoughness::default()),
+        ..Material::default()
+    };
+    assert_eq!(scene.materials, [expected]);
+}
+
+#[test]
+fn every_property_arrives() {
+    let mut file = Builder::new();
+    let view = file.view(&png([[1, 2, 3, 255], [9, 9, 9, 255], [0; 4], [255; 4]]));
+    file.json["images"] = json!([{"bufferView": view, "mimeType": "image/png", "name": "picture"}]);
+    file.json["samplers"] = json!([{"magFilter": 9728, "wrapS": 33648, "wrapT": 33071}]);
+    file.json["textures"] = json!([{"source": 0}, {"source": 0, "sampler": 0}]);
+    file.json["materials"] = json!([{
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.125, 0.75], "metallicFactor": 0.5,
+            "roughnessFactor": 0.25, "baseColorTexture": {"index": 0, "texCoord": 1},
+            "metallicRoughnessTexture": {"index": 1}},
+        "normalTexture": {"index": 1, "scale": 0.5}, "occlusionTexture": {"index": 1, "strength": 0.25},
+        "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 0.5, 0],
+        "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
+        "extensions": {"KHR_materials_unlit": {}, "KHR_materials_ior": {"ior": 1.25},
+            "KHR_materials_emissive_strength": {"emissiveStrength": 8},
+            "KHR_materials_transmission": {"transmissionFactor": 0.5}}}]);
+    let scene = file.read();
+    assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
+    assert_eq!((scene.images.len(), scene.images[0].name.as_str()), (1, "picture"));
+    let ImageData::Rgba8 { width: 2, height: 2, texels } = &scene.images[0].data else { panic!("2 x 2") };
+    assert_eq!(texels[0], [1, 2, 3, 255], "row 0 is on top");
+    let sampled = scene.textures.iter().find(|t| t.filter == Filter::Nearest).expect("the second texture");
+    assert_eq!((sampled.wrap_u, sampled.wrap_v, sampled.image), (Wrap::Mirror, Wrap::Clamp, ImageId(0)));
+    let material = &scene.materials[0];
+    let m = reflection(material);
+    assert_eq!((m.base_color, m.alpha), (LinearRgb::new(0.5, 0.25, 0.125), 0.75));
+    assert_eq!((m.metallic, m.roughness), (0.5, 0.25));
+    assert_eq!(m.base_color_texture.map(|t| t.texcoord), Some(1));
+    assert_eq!(material.normal_texture.map(|t| t.strength), Some(0.5));
+    assert_eq!(material.occlusion_texture.map(|t| t.strength), Some(0.25));
+    assert_eq!(material.emission, LinearRgb::new(8.0, 4.0, 0.0));
+    assert_eq!(material.alpha_mode, AlphaMode::Mask { cutoff: 0.25 });
+    assert!(material.double_sided && material.unlit);
+    assert_eq!((material.ior, material.transmission), (1.25, LinearRgb::new(0.125, 0.0625, 0.03125)));
+}
+
+/// The example in the extension's text: the lower left quadrant, rotated clockwise by 90 degrees.
+#[test]
+fn texture_transforms_turn_as_the_example_says() {
+    let mut file = Builder::new();
+    let view = file.view(&png([[0; 4]; 4]));
+    file.json["images"] = json!([{"bufferView": view}]);
+    file.json["textures"] = json!([{"source": 0}]);
+    file.json["materials"] = json!([{"emissiveTexture": {"index": 0, "extensions": {"KHR_texture_transform":
+        {"offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5], "texCoord": 1}}}}]);
+    let scene = file.read();
+    let texture = scene.materials[0].emission_texture.expect("a texture");
+    assert_eq!(texture.texcoord, 1);
+    let place = |u: f32, v: f32| texture.uv_transform * Vec3::new(u, v, 1.0);
+    assert!(place(0.0, 0.0).abs_diff_eq(Vec3::new(0.0, 1.0, 1.0), 1e-6));
+    assert!(place(1.0, 0.0).abs_diff_eq(Vec3::new(0.0, 0.5, 1.0), 1e-6));
+    assert!(place(0.0, 1.0).abs_diff_eq(Vec3::new(0.5, 1.0, 1.0), 1e-6));
+}
+
+#[test]
+fn specular_glossiness_is_converted_with_its_textures() {
+    let mut file = Builder::new();
+    let diffuse = file.view(&png([[255, 0, 0, 128], [0, 0, 0, 255], [255; 4], [255; 4]]));
+    let coat = file.view(&png([[0, 0, 0, 255], [255, 255, 255, 0], [0, 0, 0, 128], [0, 0, 0, 0]]));
+    file.json["images"] = json!([{"bufferView": diffuse}, {"bufferView": coat}]);
+    file.json["textures"] = json!([{"source": 0}, {"source": 1}]);
+    file.json["materials"] = json!([
+        {"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseTexture": {"index": 0},
+            "specularGlossinessTexture": {"index": 1}}}},
+        {"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.96, 0.48, 0, 0.5],
+            "specularFactor": [0, 0, 0], "glossinessFactor": 0.25}}}]);
+    let scene = file.read();
+    let m = reflection(&scene.materials[0]);
+    let texels = |t: Option<senca_scene::TextureRef>| {
+        let image = scene.textures[t.expect("a texture").texture.index()].image;
+        match &scene.images[image.index()].data {
+            ImageData::Rgba8 { texels, .. } => texels.clone(),
+            ImageData::RgbaF32 { .. } => panic!("8 bits"),
+        }
+    };
+    let (base, coat) = (texels(m.base_color_texture), texels(m.metallic_roughness_texture));
+    assert_eq!((base[0], coat[0]), ([255, 0, 0, 128], [255, 0, 0, 255]), "red, smooth, no metal");
+    assert_eq!((base[1], coat[1]), ([255, 255, 255, 255], [255, 255, 255, 255]), "white rough metal");
+    assert_eq!(coat[2], [255, 127, 0, 255]);
+    let m = reflection(&scene.materials[1]);
+    assert_eq!((m.base_color, m.alpha), (LinearRgb::new(1.0, 0.5, 0.0), 0.5));
+    assert_eq!((m.metallic, m.roughness), (0.0, 0.75));
+}
+
+#[test]
+fn pictures_come_from_files_and_are_shared() {
+    let mut file = Builder::new();
+    let picture = png([[7, 7, 7, 255]; 4]);
+    file.json["images"] = json!([{"uri": "a%20b.png"}, {"uri": "a%20b.png"}, {"uri": "lost.png"}]);
+    file.json["textures"] = json!([{"source": 0}, {"source": 1}, {"source": 2}, {}]);
+    let uses = |i: u32| json!({"emissiveTexture": {"index": i}});
+    file.json["materials"] = json!([uses(0), uses(1), uses(2), uses(3), uses(9)]);
+    let held = Held([("a b.png", picture)].into());
+    let scene = super::super::read("a.glb", &file.glb(), &held).expect("lost pictures are not fatal");
+    assert_eq!((scene.images.len(), scene.images[0].name.as_str()), (1, "a%20b.png"));
+    let used: Vec<_> = scene.materials.iter().map(|m| m.emission_texture.map(|t| t.texture)).collect();
+    assert_eq!(used, [Some(TextureId(0)), Some(TextureId(1)), None, None, None]);
+    let said = warnings(&scene);
+    assert!(
+        said.contains("images[2]") && said.contains("textures[3]") && said.contains("names texture 9"),
+        "{said}"
+    );
+}
+
+#[test]
+fn factors_out_of_range_are_brought_back() {
+    let mut file = Builder::new();
+    file.json["materials"] = json!([{"pbrMetallicRoughness": {"metallicFactor": 7, "roughnessFactor": -1},
+        "alphaMode": "GLASS", "emissiveFactor": [1e300, 0, 0], "extensions": {"KHR_materials_ior": {"ior": -1}}}]);
+    let scene = file.read();
+    let m = reflection(&scene.materials[0]);
+    assert_eq!((m.metallic, m.roughness, scene.materials[0].ior), (1.0, 0.0, 1.5));
+    assert_eq!(scene.materials[0].emission, LinearRgb::BLACK);
+    assert_eq!(scene.warnings.len(), 5, "{}", warnings(&scene));
+}

@@ -1,0 +1,42 @@
+//! Normals that a file should have given.
+
+use senca_scene::Mesh;
+use senca_scene::math::glam::{DVec3, Vec3};
+
+/// The direction of `v`, even where its length squared overflows or vanishes in `f32`.
+pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
+    v.as_dvec3().try_normalize().map(|v| v.as_vec3())
+}
+
+/// Gives vertices whose normal is NaN the mean normal of their faces, weighted by area. Where no
+/// vertex has a normal, the attribute is dropped.
+pub(crate) fn fill_missing_normals(mesh: &mut Mesh) {
+    let missing = mesh.vertices.normal.iter().filter(|n| n.is_nan()).count();
+    if missing == 0 {
+        return;
+    }
+    if missing == mesh.vertices.normal.len() {
+        mesh.vertices.normal.clear();
+        return;
+    }
+    let mut sums = vec![DVec3::ZERO; mesh.vertices.normal.len()];
+    for face in mesh.faces.iter() {
+        let area = newell(mesh, face);
+        face.iter().for_each(|&vertex| sums[vertex as usize] += area);
+    }
+    for (normal, sum) in mesh.vertices.normal.iter_mut().zip(sums) {
+        if normal.is_nan() {
+            *normal = sum.try_normalize().map_or(Vec3::Z, |n| n.as_vec3());
+        }
+    }
+}
+
+/// Normal of a polygon, twice its area long (Newell's method: Sutherland, Sproull and Schumacker
+/// 1974, appendix).
+fn newell(mesh: &Mesh, face: &[u32]) -> DVec3 {
+    let origin = mesh.position(face[0]).as_dvec3();
+    let edges = face.windows(2).skip(1);
+    edges
+        .map(|w| (mesh.position(w[0]).as_dvec3() - origin).cross(mesh.position(w[1]).as_dvec3() - origin))
+        .sum()
+}

@@ -1,0 +1,5 @@
+//! Times of the stages of the pipeline.
+
+fn main() {
+    divan::main();
+}

@@ -1,0 +1,470 @@
+//! What goes into a rasterizer and what comes out: primitives, state, shading, counters.
+
+use crate::target::{Clear, Target};
+use crate::texture::{Sampler, Texture};
+use senca_math::glam::Vec4;
+
+/// Largest number of varyings a vertex may carry.
+pub const MAX_VARYINGS: usize = 32;
+
+/// Fragments handed to a [`FragmentShader`] at once: 2 rows of 8 pixels.
+pub const LANES: usize = 16;
+
+/// Vertices and how they join into triangles, lines or points.
+///
+/// A primitive with an index beyond the vertices, or beyond the varyings given, is left out and
+/// counted in [`Counters::invalid`].
+#[derive(Clone, Copy, Debug)]
+pub struct Primitives<'a> {
+    /// Clip-space positions: x and y in [-w, w] (y up), z in [0, w] with 0 near. Of any size: what
+    /// leaves the volume is clipped. Primitives with a NaN or infinite corner are left out.
+    pub positions: &'a [Vec4],
+    /// Values to interpolate, vertex after vertex, `stride` of each.
+    pub varyings: &'a [f32],
+    /// Varyings per vertex, 0 to [`MAX_VARYINGS`].
+    pub stride: usize,
+    /// Three vertex numbers per triangle, two per line, one per point.
+    pub indices: &'a [u32],
+    /// Identifiers written to an identifier target and given to shaders.
+    pub ids: Ids<'a>,
+}
+
+/// Identifiers of primitives.
+#[derive(Clone, Copy, Debug)]
+pub enum Ids<'a> {
+    /// Primitive `n` has identifier `first + n`, wrapping.
+    From(u32),
+    /// Primitive `n` has identifier `ids[n]`, and [`senca_math::conventions::NO_ID`] beyond the end.
+    Each(&'a [u32]),
+    /// All primitives share one.
+    Same(u32),
+}
+
+impl Ids<'_> {
+    /// Identifier of primitive `n`.
+    #[must_use]
+    pub fn of(&self, n: usize) -> u32 {
+        match *self {
+            Self::From(first) => first.wrapping_add(n as u32),
+            Self::Each(ids) => ids.get(n).copied().unwrap_or(senca_math::conventions::NO_ID),
+            Self::Same(id) => id,
+        }
+    }
+}
+
+/// Everything about a draw that is not geometry or shading. The default draws the whole target,
+/// both faces, nearer wins, opaque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Where the view volume lands in the target. Default: the whole target.
+    pub viewport: Option<Viewport>,
+    /// Pixels outside are left alone (a [`State::clear`] heeds it too). Default: none.
+    pub scissor: Option<Rect>,
+    /// Faces left out. A face is front when its corners run counter-clockwise on screen.
+    /// Default: [`Cull::None`].
+    pub cull: Cull,
+    /// Which fragments pass against the depth target. Default: [`Compare::Less`], so of equal depths
+    /// the first drawn stays. Without a depth target all pass.
+    pub depth_test: Compare,
+    /// Whether passing fragments write depth. Default: yes.
+    pub depth_write: bool,
+    /// Window depth of the near and of the far plane, each in [0, 1]. Default: 0 and 1.
+    pub depth_range: [f32; 2],
+    /// Added to the depth of triangles. Default: nothing.
+    pub depth_bias: DepthBias,
+    /// How varyings run between the corners. Default: [`Interpolation::Perspective`].
+    pub interpolation: Interpolation,
+    /// How colours meet those already there. Default: `None`, they replace them.
+    pub blend: Option<Blend>,
+    /// Clears the target (inside the scissor) before the first primitive; cheaper than a separate
+    /// [`Target::clear`]. Default: no clearing.
+    pub clear: Option<Clear>,
+    /// Width of lines in pixels, at least 1. Default: 1.
+    pub line_width: f32,
+    /// Side of points in pixels, at least 1. Default: 1.
+    pub point_size: f32,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            viewport: None,
+            scissor: None,
+            cull: Cull::None,
+            depth_test: Compare::Less,
+            depth_write: true,
+            depth_range: [senca_math::conventions::DEPTH_NEAR, senca_math::conventions::DEPTH_FAR],
+            depth_bias: DepthBias::default(),
+            interpolation: Interpolation::Perspective,
+            blend: None,
+            clear: None,
+            line_width: 1.0,
+            point_size: 1.0,
+        }
+    }
+}
+
+/// The rectangle of the target, in pixels, on which x and y in [-w, w] are mapped. y = w lands on
+/// `y`, the upper side. Pixels whose centre lies outside are not drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    /// Left side.
+    pub x: f32,
+    /// Upper side.
+    pub y: f32,
+    /// Width, positive.
+    pub width: f32,
+    /// Height, positive.
+    pub height: f32,
+}
+
+/// A rectangle of pixels; it may reach beyond the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rect {
+    /// First column.
+    pub x: i32,
+    /// First row.
+    pub y: i32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// Faces to leave out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cull {
+    /// None.
+    #[default]
+    None,
+    /// Faces seen with clockwise corners.
+    Back,
+    /// Faces seen with counter-clockwise corners.
+    Front,
+}
+
+/// When a new depth passes against the stored one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compare {
+    /// Never.
+    Never,
+    /// Nearer.
+    #[default]
+    Less,
+    /// The same.
+    Equal,
+    /// Nearer or the same.
+    LessEqual,
+    /// Farther.
+    Greater,
+    /// Different.
+    NotEqual,
+    /// Farther or the same.
+    GreaterEqual,
+    /// Always.
+    Always,
+}
+
+impl Compare {
+    /// Whether `new` passes against `stored`.
+    #[must_use]
+    pub fn passes(self, new: f32, stored: f32) -> bool {
+        match self {
+            Self::Never => false,
+            Self::Less => new < stored,
+            Self::Equal => new == stored,
+            Self::LessEqual => new <= stored,
+            Self::Greater => new > stored,
+            Self::NotEqual => new != stored,
+            Self::GreaterEqual => new >= stored,
+            Self::Always => true,
+        }
+    }
+}
+
+/// An offset of the depth: `constant + slope * m`, where `m` is the larger of the depth's change
+/// per pixel in x and in y. The result is clamped to [0, 1].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthBias {
+    /// In units of depth.
+    pub constant: f32,
+    /// Factor of the slope.
+    pub slope: f32,
+}
+
+/// How varyings run between the corners of a primitive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Linear in space: right under perspective.
+    #[default]
+    Perspective,
+    /// Linear in the image: the incremental shading of the books (course text, sections 2.9, 2.10).
+    Screen,
+    /// Those of the first corner.
+    FlatFirst,
+    /// Those of the last corner.
+    FlatLast,
+}
+
+/// `source * source_factor + destination * destination_factor`, each component for itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blend {
+    /// Factor of the new colour.
+    pub source: Factor,
+    /// Factor of the colour already there.
+    pub destination: Factor,
+}
+
+impl Blend {
+    /// Source over destination, alpha not multiplied in.
+    pub const OVER: Self = Self { source: Factor::SourceAlpha, destination: Factor::OneMinusSourceAlpha };
+    /// Sum.
+    pub const ADD: Self = Self { source: Factor::One, destination: Factor::One };
+    /// Product.
+    pub const MULTIPLY: Self = Self { source: Factor::DestinationColor, destination: Factor::Zero };
+}
+
+/// A factor of [`Blend`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Factor {
+    /// 0.
+    Zero,
+    /// 1.
+    One,
+    /// The new colour.
+    SourceColor,
+    /// 1 minus the new colour.
+    OneMinusSourceColor,
+    /// The colour already there.
+    DestinationColor,
+    /// 1 minus the colour already there.
+    OneMinusDestinationColor,
+    /// Alpha of the new colour.
+    SourceAlpha,
+    /// 1 minus alpha of the new colour.
+    OneMinusSourceAlpha,
+    /// Alpha already there.
+    DestinationAlpha,
+    /// 1 minus alpha already there.
+    OneMinusDestinationAlpha,
+    /// The smaller of source alpha and 1 minus destination alpha; 1 for the alpha component.
+    SourceAlphaSaturate,
+}
+
+/// Where the colour of a fragment comes from.
+#[derive(Clone, Copy)]
+pub enum Shading<'a> {
+    /// Nowhere: depth and identifiers only; a colour target keeps what it has.
+    None,
+    /// A colour, optionally times a texture. Stays in vector registers from end to end.
+    Fixed {
+        /// The colour.
+        color: ColorSource,
+        /// The texture it is multiplied by.
+        texture: Option<TextureUnit<'a>>,
+    },
+    /// Code of the caller's, once per batch of up to [`LANES`] fragments.
+    Custom(&'a dyn FragmentShader),
+}
+
+impl Shading<'_> {
+    /// One colour, opaque or not.
+    #[must_use]
+    pub const fn constant(rgba: [f32; 4]) -> Self {
+        Self::Fixed { color: ColorSource::Constant(rgba), texture: None }
+    }
+
+    /// Colour from varyings 0, 1, 2; alpha 1.
+    #[must_use]
+    pub const fn vertex_rgb() -> Self {
+        Self::Fixed { color: ColorSource::Rgb { first: 0 }, texture: None }
+    }
+}
+
+/// A colour per fragment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColorSource {
+    /// The same everywhere: red, green, blue, alpha.
+    Constant([f32; 4]),
+    /// Varyings `first` to `first + 2`; alpha 1.
+    Rgb {
+        /// Number of the varying that is red.
+        first: usize,
+    },
+    /// Varyings `first` to `first + 3`.
+    Rgba {
+        /// Number of the varying that is red.
+        first: usize,
+    },
+}
+
+/// A texture, how it is read, and where its coordinates are.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureUnit<'a> {
+    /// What is read.
+    pub texture: &'a Texture,
+    /// How it is read.
+    pub sampler: Sampler,
+    /// Number of the varying that is u; the next one is v.
+    pub coords: usize,
+}
+
+/// Gives fragments their colour. Called from several threads at once.
+pub trait FragmentShader: Sync {
+    /// Fills `out.rgba` for the lanes in `fragments.mask`; other lanes may hold anything. Clearing a
+    /// bit of `out.keep` discards the fragment (depth and identifier are not written either).
+    ///
+    /// The result must depend on nothing but the fragment.
+    fn shade(&self, fragments: &Fragments<'_>, out: &mut Shaded);
+}
+
+/// A batch of fragments of one primitive: lane `i` is pixel `(x + i % 8, y + i / 8)`.
+///
+/// Lanes outside `mask` are not drawn, but have varyings all the same (continued beyond the
+/// primitive), so that differences of neighbours are screen derivatives: lanes `2k`, `2k + 1`,
+/// `2k + 8`, `2k + 9` are a square of 2 x 2 pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragments<'a> {
+    /// Column of lane 0, a multiple of 8.
+    pub x: u32,
+    /// Row of lane 0, even.
+    pub y: u32,
+    /// Bit `i` set: lane `i` is covered, and nearer than what is there.
+    pub mask: u16,
+    /// Window depth, 0 near to 1 far.
+    pub depth: [f32; LANES],
+    /// Interpolated varyings, in the order of [`Primitives::varyings`].
+    pub varyings: &'a [[f32; LANES]],
+    /// Identifier of the primitive.
+    pub id: u32,
+    /// Whether the primitive shows its front. True of lines and points.
+    pub front: bool,
+}
+
+impl Fragments<'_> {
+    /// Column of lane `i`.
+    #[must_use]
+    pub fn column(&self, i: usize) -> u32 {
+        self.x + (i % 8) as u32
+    }
+
+    /// Row of lane `i`.
+    #[must_use]
+    pub fn row(&self, i: usize) -> u32 {
+        self.y + (i / 8) as u32
+    }
+
+    /// Lanes to shade, in rising order.
+    pub fn lanes(&self) -> impl Iterator<Item = usize> + use<> {
+        let mask = self.mask;
+        (0..LANES).filter(move |i| mask >> i & 1 == 1)
+    }
+
+    /// Change of `value` per pixel in x and in y at lane `i`, from its square of 2 x 2 pixels.
+    #[must_use]
+    pub fn derivatives(&self, value: &[f32; LANES], i: usize) -> [f32; 2] {
+        let corner = i & !9;
+        let (row, column) = (i & 8, i & 1);
+        [value[corner + row + 1] - value[corner + row], value[corner + column + 8] - value[corner + column]]
+    }
+}
+
+/// What a [`FragmentShader`] makes of a batch.
+#[derive(Clone, Copy, Debug)]
+pub struct Shaded {
+    /// Red, green, blue, alpha, by lane. Starts as opaque black.
+    pub rgba: [[f32; LANES]; 4],
+    /// Lanes to draw. Starts with all bits set.
+    pub keep: u16,
+}
+
+impl Default for Shaded {
+    fn default() -> Self {
+        let mut rgba = [[0.0; LANES]; 4];
+        rgba[3] = [1.0; LANES];
+        Self { rgba, keep: u16::MAX }
+    }
+}
+
+impl Shaded {
+    /// Sets lane `i`.
+    pub fn set(&mut self, i: usize, rgba: [f32; 4]) {
+        for (plane, v) in self.rgba.iter_mut().zip(rgba) {
+            plane[i] = v;
+        }
+    }
+
+    /// Discards lane `i`.
+    pub fn discard(&mut self, i: usize) {
+        self.keep &= !(1 << i);
+    }
+}
+
+/// Draws primitives. [`crate::ScanlineRasterizer`] is the plain form, [`crate::TiledRasterizer`] the
+/// fast one; both cover the same pixels with the same depths.
+pub trait Rasterizer {
+    /// Draws triangles, in order.
+    fn draw(
+        &mut self,
+        target: &mut Target<'_>,
+        triangles: &Primitives<'_>,
+        state: &State,
+        shading: &Shading<'_>,
+    ) -> Counters;
+
+    /// Draws lines, in order. The end of a line is not drawn, so that joined lines share no pixel.
+    fn draw_lines(
+        &mut self,
+        target: &mut Target<'_>,
+        lines: &Primitives<'_>,
+        state: &State,
+        shading: &Shading<'_>,
+    ) -> Counters;
+
+    /// Draws points as squares, in order.
+    fn draw_points(
+        &mut self,
+        target: &mut Target<'_>,
+        points: &Primitives<'_>,
+        state: &State,
+        shading: &Shading<'_>,
+    ) -> Counters;
+}
+
+/// What happened in a draw.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Primitives given.
+    pub primitives: u64,
+    /// With an index out of range, or a position that is not finite.
+    pub invalid: u64,
+    /// Left out for their facing, or for having no area on screen.
+    pub culled: u64,
+    /// Wholly outside the view volume.
+    pub outside: u64,
+    /// Cut by the near, the far, or a guard plane.
+    pub clipped: u64,
+    /// Sent on to be drawn (pieces of a cut primitive count one by one).
+    pub drawn: u64,
+    /// Covered fragments that met the depth test. Blocks of pixels rejected as a whole by
+    /// hierarchical depth are not among them.
+    pub tested: u64,
+    /// Fragments that passed it.
+    pub passed: u64,
+    /// Fragments given a colour.
+    pub shaded: u64,
+}
+
+impl std::ops::AddAssign for Counters {
+    fn add_assign(&mut self, o: Self) {
+        self.primitives += o.primitives;
+        self.invalid += o.invalid;
+        self.culled += o.culled;
+        self.outside += o.outside;
+        self.clipped += o.clipped;
+        self.drawn += o.drawn;
+        self.tested += o.tested;
+        self.passed += o.passed;
+        self.shaded += o.shaded;
+    }
+}

@@ -1,0 +1,561 @@
+//! The pixels of one triangle in one tile: coverage, depth, colour, sixteen at a time.
+//!
+//! 1. Edge functions at the tile's pixel centres are exact integers (Pineda 1988). A centre is inside
+//!    when all three are at least 0, those of edges that are neither left nor top less one (the
+//!    top-left rule). Steps from pixel to pixel are multiples of 256, so the low 8 bits never matter
+//!    and are shifted out; what is left of an edge that crosses the tile fits 32 bits (see
+//!    [`TileEdges`]). Edges that do not cross are settled once per tile.
+//! 2. Blocks of 8 x 8 pixels wholly outside an edge, or wholly behind what is there, are passed over.
+//! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
+
+use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
+use crate::batch::{Batch, PlaneLanes};
+use crate::blend::{Rgba, blended, pack, unpack};
+use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
+use crate::target::Clear;
+use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
+
+/// What a draw's kernel needs to know, the same for all its triangles.
+pub(crate) struct Pass<'a> {
+    pub(crate) map: &'a ScreenMap,
+    pub(crate) state: &'a State,
+    pub(crate) setup: SetupState,
+    pub(crate) shading: &'a Shading<'a>,
+    pub(crate) clear: Option<Clear>,
+    pub(crate) format: ColorFormat,
+    pub(crate) has_depth: bool,
+    pub(crate) has_ids: bool,
+    pub(crate) writes_depth: bool,
+    /// The depth test passes nothing that is farther than what is there.
+    pub(crate) hides_farther: bool,
+    /// Blocks the triangle has covered hold nothing farther than it afterwards.
+    pub(crate) lowers_farthest: bool,
+    /// Depths of fragments are wanted.
+    pub(crate) needs_depth: bool,
+    /// How fragments are coloured.
+    pub(crate) color: ColorPath,
+    /// Which varyings are interpolated.
+    pub(crate) slots: Vec<usize>,
+}
+
+/// Which code colours fragments. Varyings are counted by slot; see [`slots`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ColorPath {
+    /// None: no colour target, or no shading.
+    None,
+    /// One colour.
+    Constant([f32; 4]),
+    /// Slots 0 to 2; or to 3, with alpha.
+    Varying { alpha: bool },
+    /// The caller's code.
+    Plain,
+}
+
+impl ColorPath {
+    pub(crate) fn of(shading: &Shading<'_>, format: ColorFormat) -> Self {
+        match (shading, format) {
+            (Shading::Custom(_), _) => Self::Plain,
+            (Shading::None, _) | (_, ColorFormat::None) => Self::None,
+            (Shading::Fixed { color, .. }, _) => match *color {
+                ColorSource::Constant(rgba) => Self::Constant(rgba),
+                ColorSource::Rgb { .. } => Self::Varying { alpha: false },
+                ColorSource::Rgba { .. } => Self::Varying { alpha: true },
+            },
+        }
+    }
+}
+
+/// Varyings to interpolate, in the order of their slots: those of the colour, then u and v; all, in
+/// their own order, for the caller's code.
+pub(crate) fn slots(shading: &Shading<'_>, path: ColorPath, stride: usize) -> Vec<usize> {
+    match (shading, path) {
+        (_, ColorPath::Plain) => (0..stride.min(MAX_VARYINGS)).collect(),
+        (Shading::Fixed { color, texture }, ColorPath::Constant(_) | ColorPath::Varying { .. }) => {
+            let of_color = match *color {
+                ColorSource::Constant(_) => 0..0,
+                ColorSource::Rgb { first } => first..first + 3,
+                ColorSource::Rgba { first } => first..first + 4,
+            };
+            of_color.chain(texture.iter().flat_map(|t| [t.coords, t.coords + 1])).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Fragments counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FragmentCounts {
+    pub(crate) tested: u64,
+    pub(crate) passed: u64,
+    pub(crate) shaded: u64,
+}
+
+/// The three edge functions over a tile: value at the centre of its first pixel and steps, shifted
+/// right by 8 bits.
+///
+/// Corners are within 2^23 of the origin (see [`crate::setup`]), so steps are below 2^24 and the
+/// value varies over 63 pixels in x and y by less than 2 * 63 * 2^24 < 2^31: an edge that has both
+/// signs in the tile fits `i32` everywhere in it. One that has not is replaced by 0, always inside,
+/// or makes the tile empty.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TileEdges {
+    pub(crate) c: [i32; 3],
+    pub(crate) dx: [i32; 3],
+    pub(crate) dy: [i32; 3],
+}
+
+impl TileEdges {
+    /// Edges about the pixel (`x`, `y`), counted from the origin of the fixed-point raster, for the
+    /// pixels of `area`, counted from that pixel and widened to whole vectors. `None` when the triangle
+    /// misses them all.
+    #[inline(always)]
+    pub(crate) fn new(v: &[ScreenVertex; 3], [x, y]: [i32; 2], area: &Bounds) -> Option<Self> {
+        let (cx, cy) = (i64::from(x * SUB + HALF), i64::from(y * SUB + HALF));
+        let mut edges = Self { c: [0; 3], dx: [0; 3], dy: [0; 3] };
+        for k in 0..3 {
+            let (a, b) = (&v[k], &v[(k + 1) % 3]);
+            let (ex, ey) = (b.x - a.x, b.y - a.y);
+            let value = i64::from(ex) * (cy - i64::from(a.y)) - i64::from(ey) * (cx - i64::from(a.x));
+            let owns = ey < 0 || (ey == 0 && ex > 0);
+            let c = (value - i64::from(!owns)) >> crate::setup::SUB_BITS;
+            let (dx, dy) = (i64::from(-ey), i64::from(ex));
+            let (x0, x1) = (dx * i64::from(area.x0 & !7), dx * i64::from((area.x1 - 1) | 7));
+            let (y0, y1) = (dy * i64::from(area.y0 & !1), dy * i64::from((area.y1 - 1) | 1));
+            if c + x0.max(x1) + y0.max(y1) < 0 {
+                return None;
+            }
+            if c + x0.min(x1) + y0.min(y1) < 0 {
+                edges.c[k] = c as i32;
+                edges.dx[k] = -ey;
+                edges.dy[k] = ex;
+            }
+        }
+        Some(edges)
+    }
+}
+
+/// Lane numbers within a vector: column 0 to 7, row 0 or 1.
+const LANE_X: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
+const LANE_Y: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
+const LANE_FX: [f32; LANES] = [0., 1., 2., 3., 4., 5., 6., 7., 0., 1., 2., 3., 4., 5., 6., 7.];
+const LANE_FY: [f32; LANES] = [0., 0., 0., 0., 0., 0., 0., 0., 1., 1., 1., 1., 1., 1., 1., 1.];
+
+/// One tile being drawn. `FAST` fixes what most draws have: an 8-bit colour target, no blending, no
+/// identifiers; the rest of the code is the same.
+pub(crate) struct TileDraw<'a, 'b, const FAST: bool> {
+    pub(crate) pass: &'a Pass<'a>,
+    pub(crate) band: &'a Band<'b>,
+    pub(crate) buffer: &'a mut TileBuffer,
+    pub(crate) batch: &'a mut Batch,
+    /// First pixel of the tile in the target.
+    pub(crate) tile: [i32; 2],
+    /// Pixels of the target that may be written, of this tile.
+    pub(crate) bounds: Bounds,
+    /// Whether they are fewer than the tile has.
+    pub(crate) partial: bool,
+    pub(crate) counts: FragmentCounts,
+}
+
+/// What is the same for all vectors of one row of pixel pairs: the part of each plane that depends on
+/// y, and the edges.
+#[derive(Clone, Copy)]
+struct Row<S: Simd> {
+    edges: [i32x16<S>; 3],
+    fy: f32x16<S>,
+    depth: f32x16<S>,
+}
+
+/// A plane's `c + dy * fy`; see [`Plane::at`].
+#[inline(always)]
+fn row_of<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, fy: f32x16<S>) -> f32x16<S> {
+    f32x16::splat(simd, p[0][lane]) + f32x16::splat(simd, p[2][lane]) * fy
+}
+
+/// A plane at 16 pixels, from its row.
+#[inline(always)]
+fn along<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, row: f32x16<S>, fx: f32x16<S>) -> f32x16<S> {
+    row + f32x16::splat(simd, p[1][lane]) * fx
+}
+
+/// Where a vector is.
+#[derive(Clone, Copy)]
+struct Place {
+    lane: usize,
+    block: usize,
+    pair: usize,
+}
+
+/// Where fragments are, as interpolation wants it: pixels from the reference, and weights of corners 1
+/// and 2 with w, which affine triangles do without.
+#[derive(Clone, Copy)]
+pub(crate) struct At<S: Simd> {
+    pub(crate) fx: f32x16<S>,
+    pub(crate) fy: f32x16<S>,
+    pub(crate) weights: [f32x16<S>; 3],
+    pub(crate) affine: bool,
+}
+
+impl<const FAST: bool> TileDraw<'_, '_, FAST> {
+    /// Draws the triangles of the batch and empties it.
+    #[inline(always)]
+    pub(crate) fn flush<S: Simd>(&mut self, simd: S) {
+        self.batch.prepare(simd, self.pass, self.tile, &self.bounds, self.pass.slots.len());
+        for lane in 0..self.batch.len.min(LANES) {
+            self.triangle(simd, lane);
+        }
+        self.batch.len = 0;
+    }
+
+    /// Goes through the rows of blocks of a triangle's box.
+    #[inline(always)]
+    fn triangle<S: Simd>(&mut self, simd: S, lane: usize) {
+        let b = &*self.batch;
+        let [x0, y0, x1, y1] = [b.area[0][lane], b.area[1][lane], b.area[2][lane], b.area[3][lane]];
+        if x0 >= x1 || y0 >= y1 {
+            return;
+        }
+        let (first, last) = (x0 >> 3, (x1 - 1) >> 3);
+        for by in y0 >> 3..=(y1 - 1) >> 3 {
+            let (mut active, mut full) = (0u32, 0u32);
+            for bx in first..=last {
+                let [touched, whole] = self.block(lane, bx, by, last - first > 1);
+                active |= u32::from(touched) << bx;
+                full |= u32::from(whole) << bx;
+            }
+            if active == 0 {
+                continue;
+            }
+            let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
+            for pair in top..=bottom {
+                self.row(simd, lane, by, pair, active, full);
+            }
+            if full != 0 && self.pass.lowers_farthest {
+                self.lower_farthest(lane, by, full);
+            }
+        }
+    }
+
+    /// Whether a block is to be drawn, and whether the triangle covers all of it. Brings it in if so.
+    #[inline(always)]
+    fn block(&mut self, lane: usize, bx: i32, by: i32, test: bool) -> [bool; 2] {
+        let block = (by * 8 + bx) as usize & 63;
+        let mut whole = false;
+        if test {
+            let b = &*self.batch;
+            let (mut most, mut least) = (0, 0);
+            for k in 0..3 {
+                let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
+                let at = b.edge[k][lane]
+                    .wrapping_add(dx.wrapping_mul(8 * bx))
+                    .wrapping_add(dy.wrapping_mul(8 * by));
+                most |= at.wrapping_add(7 * dx.max(0)).wrapping_add(7 * dy.max(0));
+                least |= at.wrapping_add(7 * dx.min(0)).wrapping_add(7 * dy.min(0));
+            }
+            if most < 0 {
+                return [false, false];
+            }
+            whole = least >= 0 && !self.partial;
+        }
+        if self.buffer.present >> block & 1 == 0 {
+            self.buffer.fetch(self.band, self.tile[0] as usize, block, self.pass.clear.as_ref());
+        }
+        if self.pass.hides_farther {
+            let nearest = if test { self.block_depth(lane, bx, by)[0] } else { self.batch.z_min[lane] };
+            if nearest > self.buffer.farthest[block] {
+                return [false, false];
+            }
+        }
+        [true, whole]
+    }
+
+    /// Least and greatest depth of the triangle's plane over a block, clamped to the triangle's.
+    /// Rounding keeps order, so both are found at corners, exactly.
+    #[inline(always)]
+    fn block_depth(&self, lane: usize, bx: i32, by: i32) -> [f32; 2] {
+        let b = &*self.batch;
+        let (fx, fy) = ((b.offset[0][lane] + 8 * bx) as f32, (b.offset[1][lane] + 8 * by) as f32);
+        let p = Batch::plane(&b.depth, lane);
+        let corners = [p.at(fx, fy), p.at(fx + 7.0, fy), p.at(fx, fy + 7.0), p.at(fx + 7.0, fy + 7.0)];
+        let low = corners[0].min(corners[1]).min(corners[2]).min(corners[3]);
+        let high = corners[0].max(corners[1]).max(corners[2]).max(corners[3]);
+        [low.max(b.z_min[lane]).min(b.z_max[lane]), high.max(b.z_min[lane]).min(b.z_max[lane])]
+    }
+
+    /// After blocks have been covered wholly: nothing in them is farther than the triangle any more.
+    #[inline(always)]
+    fn lower_farthest(&mut self, lane: usize, by: i32, full: u32) {
+        for bx in (0..8).filter(|bx| full >> bx & 1 == 1) {
+            let farthest = self.block_depth(lane, bx, by)[1];
+            let stored = &mut self.buffer.farthest[(by * 8 + bx) as usize & 63];
+            *stored = stored.min(farthest);
+        }
+    }
+
+    /// Two rows of pixels, block by block.
+    #[inline(always)]
+    fn row<S: Simd>(&mut self, simd: S, lane: usize, by: i32, pair: i32, active: u32, full: u32) {
+        let b = &*self.batch;
+        let y = 8 * by + 2 * pair;
+        let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, (b.offset[1][lane] + y) as f32);
+        let row = Row {
+            edges: [
+                edge_row(simd, b, 0, lane, y),
+                edge_row(simd, b, 1, lane, y),
+                edge_row(simd, b, 2, lane, y),
+            ],
+            fy,
+            depth: row_of(simd, &b.depth, lane, fy),
+        };
+        let mut left = active;
+        while left != 0 {
+            let bx = left.trailing_zeros() as i32;
+            left &= left - 1;
+            let place = Place { lane, block: (8 * by + bx) as usize & 63, pair: pair as usize & 3 };
+            if full >> bx & 1 == 1 {
+                self.vector(simd, place, &row, mask32x16::splat(simd, true), bx);
+                continue;
+            }
+            let b = &*self.batch;
+            let e0 = row.edges[0] + i32x16::splat(simd, b.edge_dx[0][lane].wrapping_mul(8 * bx));
+            let e1 = row.edges[1] + i32x16::splat(simd, b.edge_dx[1][lane].wrapping_mul(8 * bx));
+            let e2 = row.edges[2] + i32x16::splat(simd, b.edge_dx[2][lane].wrapping_mul(8 * bx));
+            let mut inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
+            if self.partial {
+                inside &= self.within_bounds(simd, bx * 8, y);
+            }
+            self.vector(simd, place, &row, inside, bx);
+        }
+    }
+
+    /// Lanes that may be written, of the vector at pixel (`x`, `y`) of the tile.
+    #[inline(always)]
+    fn within_bounds<S: Simd>(&self, simd: S, x: i32, y: i32) -> mask32x16<S> {
+        let b = &self.bounds;
+        let column = i32x16::load_array(simd, LANE_X) + i32x16::splat(simd, self.tile[0] + x);
+        let row = i32x16::load_array(simd, LANE_Y) + i32x16::splat(simd, self.tile[1] + y);
+        column.simd_ge(i32x16::splat(simd, b.x0))
+            & column.simd_lt(i32x16::splat(simd, b.x1))
+            & row.simd_ge(i32x16::splat(simd, b.y0))
+            & row.simd_lt(i32x16::splat(simd, b.y1))
+    }
+
+    /// Tests and writes two rows of 8 pixels.
+    #[inline(always)]
+    fn vector<S: Simd>(&mut self, simd: S, place: Place, row: &Row<S>, inside: mask32x16<S>, bx: i32) {
+        let Place { lane, block, pair } = place;
+        let b = &*self.batch;
+        let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (b.offset[0][lane] + 8 * bx) as f32);
+        let mut pass = inside;
+        let mut z = row.depth;
+        if self.pass.needs_depth {
+            z = along(simd, &b.depth, lane, row.depth, fx)
+                .max(f32x16::splat(simd, b.z_min[lane]))
+                .min(f32x16::splat(simd, b.z_max[lane]));
+        }
+        if self.pass.has_depth {
+            let stored = f32x16::load_array_ref(simd, &self.buffer.depth[block][pair]);
+            pass &= compare(simd, self.pass.state.depth_test, z, stored);
+        }
+        self.counts.tested += u64::from(inside.to_bitmask().count_ones());
+        let bits = pass.to_bitmask() as u16;
+        if bits == 0 {
+            return;
+        }
+        self.counts.passed += u64::from(bits.count_ones());
+        let keep = self.color(simd, place, row, fx, z, pass, bits);
+        if self.pass.writes_depth {
+            let plane = &mut self.buffer.depth[block][pair];
+            let stored = f32x16::load_array_ref(simd, plane);
+            keep.select(z, stored).store_array(plane);
+        }
+        if !FAST && self.pass.has_ids {
+            let plane = &mut self.buffer.ids[block][pair];
+            let stored = u32x16::load_array_ref(simd, plane);
+            keep.select(u32x16::splat(simd, self.batch.ids[lane]), stored).store_array(plane);
+        }
+    }
+
+    /// Colours and writes the lanes of `pass`; returns those that were not discarded.
+    #[inline(always)]
+    fn color<S: Simd>(
+        &mut self,
+        simd: S,
+        place: Place,
+        row: &Row<S>,
+        fx: f32x16<S>,
+        z: f32x16<S>,
+        pass: mask32x16<S>,
+        bits: u16,
+    ) -> mask32x16<S> {
+        let lane = place.lane;
+        let mut keep = pass;
+        let rgba = match self.pass.color {
+            ColorPath::None => return pass,
+            ColorPath::Constant(rgba) => splat4(simd, rgba),
+            ColorPath::Varying { alpha } => {
+                let at = self.at(simd, lane, fx, row.fy);
+                colors(simd, self.batch, lane, 0, alpha, &at)
+            }
+            ColorPath::Plain => {
+                let at = self.at(simd, lane, fx, row.fy);
+                let shaded = self.custom(simd, place, &at, bits, z.to_array());
+                keep &= mask32x16::from_bitmask(simd, u64::from(shaded.keep));
+                let [r, g, b, a] = &shaded.rgba;
+                [
+                    f32x16::load_array_ref(simd, r),
+                    f32x16::load_array_ref(simd, g),
+                    f32x16::load_array_ref(simd, b),
+                    f32x16::load_array_ref(simd, a),
+                ]
+            }
+        };
+        self.counts.shaded += u64::from(bits.count_ones());
+        self.write(simd, place, keep, rgba);
+        keep
+    }
+
+    /// Weights at 16 pixels; see [`Setup::weights`].
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, lane: usize, fx: f32x16<S>, fy: f32x16<S>) -> At<S> {
+        let b = &*self.batch;
+        let one = f32x16::splat(simd, 1.0);
+        if b.affine >> lane & 1 == 1 {
+            return At { fx, fy, weights: [one, one, one], affine: true };
+        }
+        let of = [
+            along(simd, &b.b1, lane, row_of(simd, &b.b1, lane, fy), fx),
+            along(simd, &b.b2, lane, row_of(simd, &b.b2, lane, fy), fx),
+            along(simd, &b.inv_w, lane, row_of(simd, &b.inv_w, lane, fy), fx),
+        ];
+        let w = one / of[2];
+        At { fx, fy, weights: [of[0] * w, of[1] * w, w], affine: false }
+    }
+
+    /// Colours by the caller's code.
+    #[inline(always)]
+    fn custom<S: Simd>(
+        &mut self,
+        simd: S,
+        place: Place,
+        at: &At<S>,
+        mask: u16,
+        depth: [f32; LANES],
+    ) -> Shaded {
+        let mut values = [[0.0; LANES]; MAX_VARYINGS];
+        let count = self.pass.slots.len().min(MAX_VARYINGS);
+        for (slot, value) in values.iter_mut().enumerate().take(count) {
+            varying(simd, &self.batch.varyings[slot], place.lane, at).store_array(value);
+        }
+        let mut shaded = Shaded::default();
+        let Shading::Custom(shader) = self.pass.shading else { return shaded };
+        let fragments = Fragments {
+            x: (self.tile[0] as usize + place.block % BLOCKS * 8) as u32,
+            y: (self.tile[1] as usize + place.block / BLOCKS * 8 + place.pair * 2) as u32,
+            mask,
+            depth,
+            varyings: &values[..count],
+            id: self.batch.ids[place.lane],
+            front: self.batch.swapped >> place.lane & 1 == 1,
+        };
+        shader.shade(&fragments, &mut shaded);
+        shaded
+    }
+
+    #[inline(always)]
+    fn write<S: Simd>(&mut self, simd: S, place: Place, keep: mask32x16<S>, rgba: Rgba<S>) {
+        let Place { block, pair, .. } = place;
+        let format = if FAST { ColorFormat::Rgba8 } else { self.pass.format };
+        let blend = if FAST { None } else { self.pass.state.blend };
+        match format {
+            ColorFormat::None => {}
+            ColorFormat::Rgba8 => {
+                let plane = &mut self.buffer.rgba8[block][pair];
+                let stored = u32x16::load_array_ref(simd, plane);
+                let rgba = match blend {
+                    None => rgba,
+                    Some(blend) => blended(simd, blend, rgba, unpack(simd, stored)),
+                };
+                keep.select(pack(simd, rgba), stored).store_array(plane);
+            }
+            ColorFormat::Rgba32F => {
+                let [r, g, b, a] = &mut self.buffer.rgba;
+                let planes =
+                    [&mut r[block][pair], &mut g[block][pair], &mut b[block][pair], &mut a[block][pair]];
+                let stored = [
+                    f32x16::load_array_ref(simd, planes[0]),
+                    f32x16::load_array_ref(simd, planes[1]),
+                    f32x16::load_array_ref(simd, planes[2]),
+                    f32x16::load_array_ref(simd, planes[3]),
+                ];
+                let rgba = match blend {
+                    None => rgba,
+                    Some(blend) => blended(simd, blend, rgba, stored),
+                };
+                for (k, plane) in planes.into_iter().enumerate() {
+                    keep.select(rgba[k], stored[k]).store_array(plane);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn splat4<S: Simd>(simd: S, [r, g, b, a]: [f32; 4]) -> Rgba<S> {
+    [f32x16::splat(simd, r), f32x16::splat(simd, g), f32x16::splat(simd, b), f32x16::splat(simd, a)]
+}
+
+/// Values of edge `k` at the vector at column 0, row `y` of the tile.
+#[inline(always)]
+fn edge_row<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, y: i32) -> i32x16<S> {
+    let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
+    i32x16::load_array(simd, LANE_X) * i32x16::splat(simd, dx)
+        + i32x16::load_array(simd, LANE_Y) * i32x16::splat(simd, dy)
+        + i32x16::splat(simd, b.edge[k][lane].wrapping_add(dy.wrapping_mul(y)))
+}
+
+/// A varying at 16 pixels; see [`crate::assemble::TriangleVaryings::at`].
+#[inline(always)]
+pub(crate) fn varying<S: Simd>(simd: S, terms: &PlaneLanes, lane: usize, at: &At<S>) -> f32x16<S> {
+    if at.affine {
+        return along(simd, terms, lane, row_of(simd, terms, lane, at.fy), at.fx);
+    }
+    (f32x16::splat(simd, terms[0][lane]) + at.weights[0] * f32x16::splat(simd, terms[1][lane]))
+        + at.weights[1] * f32x16::splat(simd, terms[2][lane])
+}
+
+/// The colour in three or four slots.
+#[inline(always)]
+fn colors<S: Simd>(simd: S, b: &Batch, lane: usize, first: usize, alpha: bool, at: &At<S>) -> Rgba<S> {
+    let slot = &b.varyings;
+    [
+        varying(simd, &slot[first % MAX_VARYINGS], lane, at),
+        varying(simd, &slot[(first + 1) % MAX_VARYINGS], lane, at),
+        varying(simd, &slot[(first + 2) % MAX_VARYINGS], lane, at),
+        if alpha {
+            varying(simd, &slot[(first + 3) % MAX_VARYINGS], lane, at)
+        } else {
+            f32x16::splat(simd, 1.0)
+        },
+    ]
+}
+
+/// Which lanes of `new` pass against `stored`.
+#[inline(always)]
+fn compare<S: Simd>(simd: S, test: Compare, new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+    // The usual ones first: a predicted branch instead of a jump through a table.
+    if test == Compare::Less {
+        return new.simd_lt(stored);
+    }
+    if test == Compare::LessEqual {
+        return new.simd_le(stored);
+    }
+    match test {
+        Compare::Never | Compare::Less | Compare::LessEqual => mask32x16::splat(simd, false),
+        Compare::Equal => new.simd_eq(stored),
+        Compare::Greater => new.simd_gt(stored),
+        Compare::NotEqual => new.simd_ne(stored),
+        Compare::GreaterEqual => new.simd_ge(stored),
+        Compare::Always => mask32x16::splat(simd, true),
+    }
+}

@@ -1,0 +1,101 @@
+//! Single pixels of a target: the depth test, the blending and the writing, the plain form.
+
+use crate::api::{Blend, Factor, State};
+use crate::setup::scissor_bounds;
+use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
+
+fn index(target: &Target<'_>, x: i32, y: i32) -> usize {
+    y as usize * target.width as usize + x as usize
+}
+
+/// Whether a fragment passes the depth test at a pixel.
+pub(crate) fn depth_passes(target: &Target<'_>, state: &State, x: i32, y: i32, depth: f32) -> bool {
+    target.depth.as_ref().is_none_or(|plane| state.depth_test.passes(depth, plane[index(target, x, y)]))
+}
+
+/// Writes a fragment that has passed.
+pub(crate) fn write(
+    target: &mut Target<'_>,
+    state: &State,
+    x: i32,
+    y: i32,
+    depth: f32,
+    id: u32,
+    rgba: Option<[f32; 4]>,
+) {
+    let i = index(target, x, y);
+    if let Some(plane) = target.depth.as_mut().filter(|_| state.depth_write) {
+        plane[i] = depth;
+    }
+    if let Some(plane) = &mut target.ids {
+        plane[i] = id;
+    }
+    if let (Some(plane), Some(rgba)) = (&mut target.color, rgba) {
+        write_color(plane, i, rgba, state.blend);
+    }
+}
+
+fn write_color(plane: &mut ColorPlane<'_>, i: usize, rgba: [f32; 4], blend: Option<Blend>) {
+    let mix = |old: [f32; 4]| blend.map_or(rgba, |b| blended(b, rgba, old));
+    match plane {
+        ColorPlane::Rgba32F(p) => p[i] = mix(p[i]),
+        ColorPlane::Rgba8(p) => p[i] = rgba8_from_rgba(mix(p[i].map(|v| f32::from(v) * (1.0 / 255.0)))),
+    }
+}
+
+/// New and old colour, mixed.
+pub(crate) fn blended(blend: Blend, new: [f32; 4], old: [f32; 4]) -> [f32; 4] {
+    let (s, d) = (factor(blend.source, new, old), factor(blend.destination, new, old));
+    std::array::from_fn(|k| new[k] * s[k] + old[k] * d[k])
+}
+
+fn factor(factor: Factor, new: [f32; 4], old: [f32; 4]) -> [f32; 4] {
+    match factor {
+        Factor::Zero => [0.0; 4],
+        Factor::One => [1.0; 4],
+        Factor::SourceColor => new,
+        Factor::OneMinusSourceColor => new.map(|v| 1.0 - v),
+        Factor::DestinationColor => old,
+        Factor::OneMinusDestinationColor => old.map(|v| 1.0 - v),
+        Factor::SourceAlpha => [new[3]; 4],
+        Factor::OneMinusSourceAlpha => [1.0 - new[3]; 4],
+        Factor::DestinationAlpha => [old[3]; 4],
+        Factor::OneMinusDestinationAlpha => [1.0 - old[3]; 4],
+        Factor::SourceAlphaSaturate => {
+            let rest = 1.0 - old[3];
+            let least = if new[3] < rest { new[3] } else { rest };
+            [least, least, least, 1.0]
+        }
+    }
+}
+
+/// Does [`State::clear`].
+pub(crate) fn clear_in_scissor(target: &mut Target<'_>, state: &State) {
+    let Some(clear) = state.clear else { return };
+    if state.scissor.is_none() {
+        target.clear(&clear);
+        return;
+    }
+    let bounds = scissor_bounds(target.width, target.height, state);
+    for y in bounds.y0..bounds.y1 {
+        if bounds.x0 < bounds.x1 {
+            let row = index(target, bounds.x0, y)..index(target, bounds.x1 - 1, y) + 1;
+            clear_range(target, row, &clear);
+        }
+    }
+}
+
+fn clear_range(target: &mut Target<'_>, range: std::ops::Range<usize>, clear: &Clear) {
+    if let (Some(plane), Some(rgba)) = (&mut target.color, clear.color) {
+        match plane {
+            ColorPlane::Rgba32F(p) => p[range.clone()].fill(rgba),
+            ColorPlane::Rgba8(p) => p[range.clone()].fill(rgba8_from_rgba(rgba)),
+        }
+    }
+    if let (Some(plane), Some(depth)) = (&mut target.depth, clear.depth) {
+        plane[range.clone()].fill(depth);
+    }
+    if let (Some(plane), Some(id)) = (&mut target.ids, clear.id) {
+        plane[range].fill(id);
+    }
+}

@@ -1,0 +1,200 @@
+//! What is drawn into: views of colour, depth and identifier planes, and an owner of all three.
+
+use senca_math::Image;
+use senca_math::conventions::{DEPTH_FAR, NO_ID};
+
+/// Largest width or height of a target, in pixels. Leaves a rim inside the fixed-point range of
+/// +-2^15 pixels about the middle.
+pub const MAX_TARGET_SIDE: u32 = 65_408;
+
+/// Why planes do not make a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TargetError {
+    /// A side is longer than [`MAX_TARGET_SIDE`].
+    #[error(
+        "a target of {width} x {height} pixels is too large: a side may have {MAX_TARGET_SIDE} pixels at most"
+    )]
+    TooLarge {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+    },
+    /// A plane does not have one element per pixel.
+    #[error("a plane of {found} elements does not fit a target of {expected} pixels")]
+    PlaneSize {
+        /// Pixels of the target.
+        expected: usize,
+        /// Elements of the plane.
+        found: usize,
+    },
+}
+
+/// The colour plane of a [`Target`], row 0 on top.
+#[derive(Debug)]
+pub enum ColorPlane<'a> {
+    /// Red, green, blue, alpha as they are; the layout of [`Image`].
+    Rgba32F(&'a mut [[f32; 4]]),
+    /// Red, green, blue, alpha, each clamped to [0, 1] and rounded to 8 bits; no encoding is applied.
+    Rgba8(&'a mut [[u8; 4]]),
+}
+
+/// What a draw writes to: any combination of colour, depth and identifiers, of one size.
+#[derive(Debug)]
+pub struct Target<'a> {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) color: Option<ColorPlane<'a>>,
+    pub(crate) depth: Option<&'a mut [f32]>,
+    pub(crate) ids: Option<&'a mut [u32]>,
+}
+
+/// The values of an empty target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clear {
+    /// Colour; `None` leaves the plane. Default: transparent black.
+    pub color: Option<[f32; 4]>,
+    /// Depth; `None` leaves the plane. Default: 1, the far plane.
+    pub depth: Option<f32>,
+    /// Identifier; `None` leaves the plane. Default: [`NO_ID`].
+    pub id: Option<u32>,
+}
+
+impl Default for Clear {
+    fn default() -> Self {
+        Self { color: Some([0.0; 4]), depth: Some(DEPTH_FAR), id: Some(NO_ID) }
+    }
+}
+
+impl<'a> Target<'a> {
+    /// A target without planes. Draws to it only count.
+    ///
+    /// # Errors
+    /// [`TargetError::TooLarge`].
+    pub fn new(width: u32, height: u32) -> Result<Self, TargetError> {
+        if width.max(height) > MAX_TARGET_SIDE {
+            return Err(TargetError::TooLarge { width, height });
+        }
+        Ok(Self { width, height, color: None, depth: None, ids: None })
+    }
+
+    /// A target that draws into a picture.
+    ///
+    /// # Errors
+    /// [`TargetError::TooLarge`].
+    pub fn of_image(image: &'a mut Image) -> Result<Self, TargetError> {
+        Self::new(image.width(), image.height())?.with_color(ColorPlane::Rgba32F(image.pixels_mut()))
+    }
+
+    /// With a colour plane.
+    ///
+    /// # Errors
+    /// [`TargetError::PlaneSize`].
+    pub fn with_color(mut self, color: ColorPlane<'a>) -> Result<Self, TargetError> {
+        self.check(match &color {
+            ColorPlane::Rgba32F(p) => p.len(),
+            ColorPlane::Rgba8(p) => p.len(),
+        })?;
+        self.color = Some(color);
+        Ok(self)
+    }
+
+    /// With a depth plane; depths are 0 near to 1 far.
+    ///
+    /// # Errors
+    /// [`TargetError::PlaneSize`].
+    pub fn with_depth(mut self, depth: &'a mut [f32]) -> Result<Self, TargetError> {
+        self.check(depth.len())?;
+        self.depth = Some(depth);
+        Ok(self)
+    }
+
+    /// With an identifier plane.
+    ///
+    /// # Errors
+    /// [`TargetError::PlaneSize`].
+    pub fn with_ids(mut self, ids: &'a mut [u32]) -> Result<Self, TargetError> {
+        self.check(ids.len())?;
+        self.ids = Some(ids);
+        Ok(self)
+    }
+
+    fn check(&self, found: usize) -> Result<(), TargetError> {
+        let expected = self.width as usize * self.height as usize;
+        if found == expected { Ok(()) } else { Err(TargetError::PlaneSize { expected, found }) }
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Fills the planes that are there.
+    pub fn clear(&mut self, clear: &Clear) {
+        if let (Some(plane), Some(rgba)) = (&mut self.color, clear.color) {
+            match plane {
+                ColorPlane::Rgba32F(p) => p.fill(rgba),
+                ColorPlane::Rgba8(p) => p.fill(rgba8_from_rgba(rgba)),
+            }
+        }
+        if let (Some(plane), Some(depth)) = (&mut self.depth, clear.depth) {
+            plane.fill(depth);
+        }
+        if let (Some(plane), Some(id)) = (&mut self.ids, clear.id) {
+            plane.fill(id);
+        }
+    }
+}
+
+/// Each component clamped to [0, 1] and rounded to 8 bits; NaN becomes 0.
+#[must_use]
+pub fn rgba8_from_rgba(rgba: [f32; 4]) -> [u8; 4] {
+    rgba.map(|v| {
+        let low = if v > 0.0 { v } else { 0.0 };
+        let clamped = if low < 1.0 { low } else { 1.0 };
+        (clamped * 255.0 + 0.5) as u8
+    })
+}
+
+/// Owned planes: a picture, depths and, if asked for, identifiers.
+#[derive(Clone, Debug)]
+pub struct Buffers {
+    /// Linear colour.
+    pub color: Image,
+    /// Depths, row 0 on top.
+    pub depth: Vec<f32>,
+    /// Identifiers, row 0 on top; may be empty.
+    pub ids: Vec<u32>,
+}
+
+impl Buffers {
+    /// Colour transparent black, depth far, no identifier plane.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        Self { color: Image::new(width, height, [0.0; 4]), depth: vec![DEPTH_FAR; pixels], ids: Vec::new() }
+    }
+
+    /// As [`Buffers::new`], with identifiers, all [`NO_ID`].
+    #[must_use]
+    pub fn with_ids(width: u32, height: u32) -> Self {
+        let ids = vec![NO_ID; width as usize * height as usize];
+        Self { ids, ..Self::new(width, height) }
+    }
+
+    /// A view to draw into.
+    ///
+    /// # Errors
+    /// Those of [`Target`]; a plane may have been resized by hand.
+    pub fn target(&mut self) -> Result<Target<'_>, TargetError> {
+        let target = Target::of_image(&mut self.color)?.with_depth(&mut self.depth)?;
+        if self.ids.is_empty() { Ok(target) } else { target.with_ids(&mut self.ids) }
+    }
+}

@@ -1,0 +1,273 @@
+//! The part of a target that fits the cache: one tile, its blocks brought in when first touched and
+//! taken back when the tile is done.
+//!
+//! A tile is 8 x 8 blocks of 8 x 8 pixels. The pixels of a block are stored together, row by row, so
+//! that 16 in a row are two rows of 8: one vector.
+
+use crate::api::LANES;
+use crate::bin::TILE;
+use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
+
+/// Blocks along a side of a tile.
+pub(crate) const BLOCKS: usize = TILE / 8;
+
+/// A quantity of the pixels of a block: four vectors, each two rows of 8 pixels.
+pub(crate) type Block<T> = [[T; LANES]; 4];
+/// A quantity of every pixel of a tile, block after block.
+pub(crate) type BlockPlane<T> = Box<[Block<T>; BLOCKS * BLOCKS]>;
+
+fn block_plane<T: Copy + std::fmt::Debug>(value: T) -> BlockPlane<T> {
+    let blocks = vec![[[value; LANES]; 4]; BLOCKS * BLOCKS].into_boxed_slice();
+    blocks.try_into().unwrap_or_else(|_| unreachable!("made with that many blocks"))
+}
+
+/// The rows of a target that one row of tiles covers.
+pub(crate) struct Band<'a> {
+    /// Number of the row of tiles.
+    pub(crate) row: usize,
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) color: Option<ColorPlane<'a>>,
+    pub(crate) depth: Option<&'a mut [f32]>,
+    pub(crate) ids: Option<&'a mut [u32]>,
+}
+
+/// Splits a target into its rows of tiles.
+pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
+    let (width, height) = (target.width as usize, target.height as usize);
+    let step = (width * TILE).max(1);
+    let mut colors: Vec<_> = match &mut target.color {
+        Some(ColorPlane::Rgba32F(p)) => p.chunks_mut(step).map(|c| Some(ColorPlane::Rgba32F(c))).collect(),
+        Some(ColorPlane::Rgba8(p)) => p.chunks_mut(step).map(|c| Some(ColorPlane::Rgba8(c))).collect(),
+        None => Vec::new(),
+    };
+    let mut depths = target.depth.as_deref_mut().map(|p| p.chunks_mut(step));
+    let mut ids = target.ids.as_deref_mut().map(|p| p.chunks_mut(step));
+    (0..height.div_ceil(TILE))
+        .map(|row| Band {
+            row,
+            width,
+            height: TILE.min(height - row * TILE),
+            color: colors.get_mut(row).and_then(Option::take),
+            depth: depths.as_mut().and_then(Iterator::next),
+            ids: ids.as_mut().and_then(Iterator::next),
+        })
+        .collect()
+}
+
+/// How a target stores colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ColorFormat {
+    None,
+    Rgba8,
+    Rgba32F,
+}
+
+impl ColorFormat {
+    pub(crate) fn of(target: &Target<'_>) -> Self {
+        match target.color {
+            None => Self::None,
+            Some(ColorPlane::Rgba8(_)) => Self::Rgba8,
+            Some(ColorPlane::Rgba32F(_)) => Self::Rgba32F,
+        }
+    }
+}
+
+/// The tile being drawn.
+#[derive(Debug)]
+pub(crate) struct TileBuffer {
+    /// Colour packed, red in the low byte.
+    pub(crate) rgba8: BlockPlane<u32>,
+    /// Colour as four planes.
+    pub(crate) rgba: [BlockPlane<f32>; 4],
+    pub(crate) depth: BlockPlane<f32>,
+    pub(crate) ids: BlockPlane<u32>,
+    /// Per block, no stored depth is greater.
+    pub(crate) farthest: [f32; BLOCKS * BLOCKS],
+    /// Blocks that have been brought in, bit by bit.
+    pub(crate) present: u64,
+}
+
+impl Default for TileBuffer {
+    fn default() -> Self {
+        Self {
+            rgba8: block_plane(0),
+            rgba: [block_plane(0.0), block_plane(0.0), block_plane(0.0), block_plane(0.0)],
+            depth: block_plane(0.0),
+            ids: block_plane(0),
+            farthest: [f32::INFINITY; BLOCKS * BLOCKS],
+            present: 0,
+        }
+    }
+}
+
+/// A row of 8 pixels of block (`bx`, `by`) within a band; fewer at the right rim.
+fn row_range(width: usize, tile_x: usize, block: usize, y: usize) -> std::ops::Range<usize> {
+    let x = tile_x + (block % BLOCKS) * 8;
+    let start = y * width + x.min(width);
+    start..y * width + (x + 8).min(width)
+}
+
+impl TileBuffer {
+    /// Brings a block in, from the target or freshly cleared.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn fetch(&mut self, band: &Band<'_>, tile_x: usize, block: usize, clear: Option<&Clear>) {
+        self.present |= 1 << block;
+        self.farthest[block] = f32::INFINITY;
+        match clear.and_then(|c| c.color) {
+            Some(rgba) => self.clear_color(block, rgba, band),
+            None => self.fetch_color(band, tile_x, block),
+        }
+        if let Some(plane) = &band.depth {
+            match clear.and_then(|c| c.depth) {
+                Some(depth) => fill(&mut self.depth[block], depth),
+                None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
+            }
+            self.farthest[block] =
+                self.depth[block].as_flattened().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        }
+        if let Some(plane) = &band.ids {
+            match clear.and_then(|c| c.id) {
+                Some(id) => fill(&mut self.ids[block], id),
+                None => fetch_plane(&mut self.ids[block], plane, band, tile_x, block),
+            }
+        }
+    }
+
+    fn clear_color(&mut self, block: usize, rgba: [f32; 4], band: &Band<'_>) {
+        match band.color {
+            Some(ColorPlane::Rgba8(_)) => {
+                fill(&mut self.rgba8[block], u32::from_le_bytes(rgba8_from_rgba(rgba)))
+            }
+            Some(ColorPlane::Rgba32F(_)) => {
+                for (plane, v) in self.rgba.iter_mut().zip(rgba) {
+                    fill(&mut plane[block], v);
+                }
+            }
+            None => {}
+        }
+    }
+
+    fn fetch_color(&mut self, band: &Band<'_>, tile_x: usize, block: usize) {
+        for (y, row) in block_rows(band, block) {
+            let range = row_range(band.width, tile_x, block, y);
+            match &band.color {
+                Some(ColorPlane::Rgba8(p)) => {
+                    for (to, from) in
+                        self.rgba8[block].as_flattened_mut()[row * 8..].iter_mut().zip(&p[range])
+                    {
+                        *to = u32::from_le_bytes(*from);
+                    }
+                }
+                Some(ColorPlane::Rgba32F(p)) => {
+                    for (x, from) in p[range].iter().enumerate() {
+                        for (plane, v) in self.rgba.iter_mut().zip(from) {
+                            plane[block].as_flattened_mut()[row * 8 + x] = *v;
+                        }
+                    }
+                }
+                None => {}
+            }
+        }
+    }
+
+    /// Takes the tile back to the target. With `clear`, blocks that were never touched are cleared.
+    pub(crate) fn store(
+        &mut self,
+        band: &mut Band<'_>,
+        tile_x: usize,
+        clear: Option<&Clear>,
+        depth_written: bool,
+    ) {
+        let (width, height) = (band.width, band.height);
+        let present = std::mem::take(&mut self.present);
+        if present == 0 && clear.is_none() {
+            return;
+        }
+        let rows = Rows { width, height, tile_x, present };
+        match (&mut band.color, clear.map(|c| c.color)) {
+            (Some(ColorPlane::Rgba8(p)), clear) => {
+                let clear = clear.flatten().map(rgba8_from_rgba);
+                rows.store(p, clear, |block, row| eight(&self.rgba8[block], row).map(u32::to_le_bytes));
+            }
+            (Some(ColorPlane::Rgba32F(p)), clear) => rows.store(p, clear.flatten(), |block, row| {
+                let at = |k: usize, x: usize| self.rgba[k][block].as_flattened()[row + x];
+                std::array::from_fn(|x| [at(0, x), at(1, x), at(2, x), at(3, x)])
+            }),
+            (None, _) => {}
+        }
+        if let Some(p) = band.depth.as_mut().filter(|_| depth_written || clear.is_some()) {
+            rows.store(p, clear.and_then(|c| c.depth), |block, row| eight(&self.depth[block], row));
+        }
+        if let Some(p) = &mut band.ids {
+            rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block], row));
+        }
+    }
+}
+
+/// Eight pixels of a block, from number `first` on.
+#[inline(always)]
+fn eight<T: Copy>(block: &Block<T>, first: usize) -> [T; 8] {
+    let pair = &block[first / LANES % 4];
+    let half = first % LANES / 8 * 8;
+    std::array::from_fn(|x| pair[half + x])
+}
+
+/// The rows of a tile within its band.
+struct Rows {
+    width: usize,
+    height: usize,
+    tile_x: usize,
+    present: u64,
+}
+
+impl Rows {
+    /// Writes the blocks that are present, row by row of the target, and `clear` elsewhere.
+    /// `get` gives eight pixels of a block from one on.
+    #[inline(always)]
+    fn store<T: Copy>(&self, plane: &mut [T], clear: Option<T>, get: impl Fn(usize, usize) -> [T; 8]) {
+        let end = (self.tile_x + TILE).min(self.width);
+        for y in 0..self.height {
+            let row = &mut plane[y * self.width + self.tile_x..y * self.width + end];
+            let present = self.present >> (y / 8 * BLOCKS) & 255;
+            if present == 0 {
+                clear.into_iter().for_each(|v| row.fill(v));
+                continue;
+            }
+            for (bx, to) in row.chunks_mut(8).enumerate() {
+                if present >> bx & 1 == 1 {
+                    let from = get(y / 8 * BLOCKS + bx, y % 8 * 8);
+                    store_row(to, &from);
+                } else if let Some(v) = clear {
+                    to.fill(v);
+                }
+            }
+        }
+    }
+}
+
+fn fill<T: Copy>(block: &mut Block<T>, value: T) {
+    block.as_flattened_mut().fill(value);
+}
+
+/// Rows of a block that are inside the band: row of the band, row of the block.
+fn block_rows(band: &Band<'_>, block: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+    let first = (block / BLOCKS) * 8;
+    (first..(first + 8).min(band.height)).zip(0..)
+}
+
+fn fetch_plane<T: Copy>(to: &mut Block<T>, plane: &[T], band: &Band<'_>, tile_x: usize, block: usize) {
+    for (y, row) in block_rows(band, block) {
+        let from = &plane[row_range(band.width, tile_x, block, y)];
+        to.as_flattened_mut()[row * 8..][..from.len()].copy_from_slice(from);
+    }
+}
+
+#[inline(always)]
+fn store_row<T: Copy>(to: &mut [T], from: &[T; 8]) {
+    match <&mut [T; 8]>::try_from(&mut *to) {
+        Ok(whole) => *whole = *from,
+        Err(_) => to.copy_from_slice(&from[..to.len()]),
+    }
+}

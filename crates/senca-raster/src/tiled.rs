@@ -1,0 +1,343 @@
+//! The tiled rasterizer: project, bin, then draw tile by tile on as many threads as wanted.
+
+use crate::api::{
+    Compare, Counters, Interpolation, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shading, State,
+};
+use crate::assemble::{varyings_of, vertex_count};
+use crate::batch::Batch;
+use crate::bin::{BinInput, RUN, Reference, Run, TILE};
+use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
+use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
+use crate::target::{Clear, Target};
+use crate::tile::{Band, ColorFormat, TileBuffer, bands};
+use fearless_simd::{Level, Simd, dispatch};
+use std::sync::Mutex;
+
+/// How a [`TiledRasterizer`] works. None of it changes a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct TiledSettings {
+    /// Parts the work is divided into; they run on the current rayon pool. 0, the default: as many as
+    /// the pool has threads. 1: all on the calling thread.
+    pub threads: usize,
+    /// Vector instructions used. Default: the best of this machine.
+    pub level: Level,
+}
+
+impl Default for TiledSettings {
+    fn default() -> Self {
+        Self { threads: 0, level: Level::new() }
+    }
+}
+
+/// The fast rasterizer. Keep one and draw with it often: its scratch memory is reused.
+#[derive(Debug, Default)]
+pub struct TiledRasterizer {
+    settings: TiledSettings,
+    vertices: Vec<ScreenVertex>,
+    runs: Vec<Run>,
+    scratch: Vec<Scratch>,
+}
+
+impl TiledRasterizer {
+    /// A rasterizer with settings.
+    #[must_use]
+    pub fn new(settings: TiledSettings) -> Self {
+        Self { settings, ..Self::default() }
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> TiledSettings {
+        self.settings
+    }
+
+    fn threads(&self) -> usize {
+        match self.settings.threads {
+            0 => rayon::current_num_threads(),
+            n => n,
+        }
+    }
+}
+
+impl Rasterizer for TiledRasterizer {
+    fn draw(
+        &mut self,
+        target: &mut Target<'_>,
+        triangles: &Primitives<'_>,
+        state: &State,
+        shading: &Shading<'_>,
+    ) -> Counters {
+        let map = ScreenMap::new(target.width, target.height, state);
+        let mut clear = state.clear;
+        if state.scissor.is_some() {
+            crate::pixel::clear_in_scissor(target, state);
+            clear = None;
+        }
+        let threads = self.threads();
+        let tiles = [target.width as usize, target.height as usize].map(|n| n.div_ceil(TILE));
+        let first_vertex = self.project(triangles, &map, threads);
+        let input = BinInput {
+            primitives: triangles,
+            vertices: &self.vertices,
+            first_vertex,
+            map: &map,
+            cull: state.cull,
+            interpolation: state.interpolation,
+            tiles,
+        };
+        let count = triangles.indices.len() / 3;
+        let runs = count.div_ceil(RUN);
+        if self.runs.len() < runs {
+            self.runs.resize_with(runs, Run::default);
+        }
+        let jobs = self.runs[..runs].iter_mut().enumerate();
+        let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
+            run.fill(&input, k * RUN..((k + 1) * RUN).min(count));
+            run.counters
+        });
+        let mut counters = Counters::default();
+        filled.into_iter().for_each(|c| counters += c);
+        let pass = pass(target, triangles, state, shading, &map, clear);
+        let frame = Frame { input: &input, runs: &self.runs[..runs], pass: &pass };
+        for c in frame.draw(target, threads, &mut self.scratch, self.settings.level) {
+            counters.tested += c.tested;
+            counters.passed += c.passed;
+            counters.shaded += c.shaded;
+        }
+        counters
+    }
+
+    fn draw_lines(
+        &mut self,
+        target: &mut Target<'_>,
+        lines: &Primitives<'_>,
+        state: &State,
+        shading: &Shading<'_>,
+    ) -> Counters {
+        crate::lines::draw_lines(target, lines, state, shading)
+    }
+
+    fn draw_points(
+        &mut self,
+        target: &mut Target<'_>,
+        points: &Primitives<'_>,
+        state: &State,
+        shading: &Shading<'_>,
+    ) -> Counters {
+        crate::lines::draw_points(target, points, state, shading)
+    }
+}
+
+/// What the tiles need to know of a draw.
+fn pass<'a>(
+    target: &Target<'_>,
+    triangles: &Primitives<'_>,
+    state: &'a State,
+    shading: &'a Shading<'a>,
+    map: &'a ScreenMap,
+    clear: Option<Clear>,
+) -> Pass<'a> {
+    let (has_depth, format) = (target.depth.is_some(), ColorFormat::of(target));
+    let color = ColorPath::of(shading, format);
+    let custom = color == ColorPath::Plain;
+    let hides_farther = has_depth && matches!(state.depth_test, Compare::Less | Compare::LessEqual);
+    Pass {
+        map,
+        state,
+        setup: SetupState::new(state),
+        shading,
+        clear,
+        format,
+        has_depth,
+        has_ids: target.ids.is_some(),
+        writes_depth: has_depth && state.depth_write,
+        hides_farther,
+        lowers_farthest: hides_farther && state.depth_write && !custom,
+        needs_depth: has_depth || custom,
+        color,
+        slots: slots(shading, color, triangles.stride),
+    }
+}
+
+impl TiledRasterizer {
+    /// Projects the vertices the indices refer to; returns the number of the first.
+    fn project(&mut self, p: &Primitives<'_>, map: &ScreenMap, threads: usize) -> usize {
+        let count = vertex_count(p);
+        let (first, last) = p.indices.iter().fold((u32::MAX, 0), |(a, b), &i| (a.min(i), b.max(i)));
+        let end = (last as usize + 1).min(count);
+        let first = (first as usize).min(end);
+        let positions = &p.positions[first..end];
+        self.vertices.clear();
+        self.vertices.resize(positions.len(), ScreenVertex::default());
+        let jobs = positions.chunks(RUN).zip(self.vertices.chunks_mut(RUN)).collect();
+        share(threads, jobs, |(from, to): (&[_], &mut [ScreenVertex])| {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = map.project(*from);
+            }
+        });
+        first
+    }
+}
+
+/// Everything the tiles are drawn from.
+struct Frame<'a> {
+    input: &'a BinInput<'a>,
+    runs: &'a [Run],
+    pass: &'a Pass<'a>,
+}
+
+impl Frame<'_> {
+    fn draw(
+        &self,
+        target: &mut Target<'_>,
+        threads: usize,
+        buffers: &mut Vec<Scratch>,
+        level: Level,
+    ) -> Vec<FragmentCounts> {
+        let columns = self.input.tiles[0];
+        let mut work: Vec<_> = bands(target)
+            .into_iter()
+            .map(|band| {
+                let tiles = band.row * columns..(band.row + 1) * columns;
+                (self.runs.iter().map(|r| r.work(tiles.clone())).sum::<u64>(), band)
+            })
+            .filter(|(references, _)| *references > 0 || self.pass.clear.is_some())
+            .collect();
+        work.sort_by_key(|w| std::cmp::Reverse(w.0));
+        let spare = Mutex::new(std::mem::take(buffers));
+        let pass = self.pass;
+        let fast = pass.format == ColorFormat::Rgba8 && pass.state.blend.is_none() && !pass.has_ids;
+        let counts = share(threads, work, |(_, mut band)| {
+            let mut buffer: Scratch = lock(&spare).pop().unwrap_or_default();
+            let counts = if fast {
+                dispatch!(level, simd => self.draw_band::<_, true>(simd, &mut band, &mut buffer))
+            } else {
+                dispatch!(level, simd => self.draw_band::<_, false>(simd, &mut band, &mut buffer))
+            };
+            lock(&spare).push(buffer);
+            counts
+        });
+        *buffers = spare.into_inner().unwrap_or_default();
+        counts
+    }
+
+    #[inline(always)]
+    fn draw_band<S: Simd, const FAST: bool>(
+        &self,
+        simd: S,
+        band: &mut Band<'_>,
+        scratch: &mut Scratch,
+    ) -> FragmentCounts {
+        let mut counts = FragmentCounts::default();
+        let clear: Option<&Clear> = self.pass.clear.as_ref();
+        for column in 0..self.input.tiles[0] {
+            let tile = band.row * self.input.tiles[0] + column;
+            let (x, y) = ((column * TILE) as i32, (band.row * TILE) as i32);
+            let whole = Bounds { x0: x, y0: y, x1: x + TILE as i32, y1: y + TILE as i32 };
+            let bounds = whole.intersect(self.pass.map.bounds);
+            let mut draw = TileDraw::<FAST> {
+                pass: self.pass,
+                band,
+                buffer: &mut scratch.tile,
+                batch: &mut scratch.batch,
+                tile: [x, y],
+                bounds,
+                partial: bounds != whole,
+                counts,
+            };
+            for run in self.runs {
+                self.draw_run(simd, &mut draw, run, tile);
+            }
+            draw.flush(simd);
+            counts = draw.counts;
+            scratch.tile.store(band, x as usize, clear, self.pass.writes_depth);
+        }
+        counts
+    }
+
+    #[inline(always)]
+    fn draw_run<S: Simd, const FAST: bool>(
+        &self,
+        simd: S,
+        draw: &mut TileDraw<'_, '_, FAST>,
+        run: &Run,
+        tile: usize,
+    ) {
+        for reference in run.of_tile(tile) {
+            match reference.piece() {
+                None => self.fetch(draw.batch, reference),
+                Some(k) => self.fetch_piece(draw.batch, run, k),
+            }
+            if draw.batch.len == LANES {
+                draw.flush(simd);
+            }
+        }
+    }
+
+    /// Puts a triangle into the batch.
+    #[inline(always)]
+    fn fetch(&self, batch: &mut Batch, reference: &Reference) {
+        let (p, [a, b, c]) = (self.input.primitives, reference.corners);
+        let v = [self.input.projected(a), self.input.projected(b), self.input.projected(c)];
+        let lane = batch.push(&v, p.ids.of(reference.triangle()));
+        let from = match self.pass.state.interpolation {
+            Interpolation::FlatFirst => [a; 3],
+            Interpolation::FlatLast => [c; 3],
+            _ => [a, b, c],
+        };
+        let values = from.map(|i| varyings_of(p, i));
+        for (slot, &varying) in self.pass.slots.iter().enumerate() {
+            let to = &mut batch.values[slot % MAX_VARYINGS];
+            for k in 0..3 {
+                to[k][lane] = values[k].get(varying).copied().unwrap_or(0.0);
+            }
+        }
+    }
+
+    /// Puts a piece of a clipped triangle into the batch.
+    #[inline(never)]
+    fn fetch_piece(&self, batch: &mut Batch, run: &Run, k: usize) {
+        let (p, piece) = (self.input.primitives, run.pieces[k]);
+        let lane = batch.push(&piece.v, p.ids.of(piece.triangle as usize));
+        for c in 0..3 {
+            let values = &run.piece_varyings[piece.varyings as usize + c * p.stride..][..p.stride];
+            for (slot, &varying) in self.pass.slots.iter().enumerate() {
+                batch.values[slot % MAX_VARYINGS][c][lane] = values.get(varying).copied().unwrap_or(0.0);
+            }
+        }
+    }
+}
+
+/// Memory of one thread.
+#[derive(Debug, Default)]
+struct Scratch {
+    tile: TileBuffer,
+    batch: Batch,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// Does all jobs, the first ones first, on `threads` threads; results in no particular order.
+fn share<J: Send, R: Send>(threads: usize, jobs: Vec<J>, work: impl Fn(J) -> R + Sync) -> Vec<R> {
+    let tasks = threads.min(jobs.len());
+    if tasks <= 1 {
+        return jobs.into_iter().map(work).collect();
+    }
+    let (queue, done) = (Mutex::new(jobs.into_iter()), Mutex::new(Vec::new()));
+    let run = || {
+        loop {
+            let job = lock(&queue).next();
+            let Some(job) = job else { break };
+            let result = work(job);
+            lock(&done).push(result);
+        }
+    };
+    rayon::scope(|scope| {
+        for _ in 0..tasks {
+            scope.spawn(|_| run());
+        }
+    });
+    done.into_inner().unwrap_or_default()
+}

@@ -1,0 +1,268 @@
+//! The two rasterizers draw the same pictures, whatever the vector instructions and the threads.
+
+use senca_math::glam::Vec4;
+use senca_raster::{
+    Blend, Buffers, Clear, ColorPlane, Compare, Counters, Cull, DepthBias, FragmentShader, Fragments, Ids,
+    Interpolation, Primitives, Rasterizer, Rect, ScanlineRasterizer, Shaded, Shading, SimdLevel, State,
+    Target, TiledRasterizer, TiledSettings, Viewport,
+};
+
+/// Numbers in [0, 1), the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    fn within(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.next()
+    }
+}
+
+struct Mesh {
+    positions: Vec<Vec4>,
+    varyings: Vec<f32>,
+    indices: Vec<u32>,
+}
+
+const STRIDE: usize = 4;
+
+impl Mesh {
+    /// Triangles of all sizes, some across the near plane, behind the eye, or far outside.
+    fn random(seed: u64, triangles: usize) -> Self {
+        let mut r = Random(seed);
+        let mut mesh = Self { positions: Vec::new(), varyings: Vec::new(), indices: Vec::new() };
+        for n in 0..triangles {
+            let size = [0.02, 0.1, 0.5, 3.0, 300.0][n % 5];
+            let (x, y) = (r.within(-1.3, 1.3), r.within(-1.3, 1.3));
+            for k in 0..3 {
+                let w = if n % 3 == 0 { 1.0 } else { r.within(-0.3, 3.0) };
+                let z = r.within(-0.1, 1.1) * w;
+                let (dx, dy) = (r.within(-size, size), r.within(-size, size));
+                mesh.positions.push(Vec4::new((x + dx) * w, (y + dy) * w, z, w));
+                mesh.varyings.extend([r.next(), r.next(), r.next(), r.next()]);
+                mesh.indices.push((3 * n + k) as u32);
+            }
+        }
+        mesh
+    }
+
+    fn primitives(&self) -> Primitives<'_> {
+        Primitives {
+            positions: &self.positions,
+            varyings: &self.varyings,
+            stride: STRIDE,
+            indices: &self.indices,
+            ids: Ids::From(0),
+        }
+    }
+}
+
+fn levels() -> Vec<SimdLevel> {
+    let best = SimdLevel::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        use senca_raster::simd::Simd;
+        let all = [
+            best.as_sse2().map(|s| s.level()),
+            best.as_sse4_2().map(|s| s.level()),
+            best.as_avx2().map(|s| s.level()),
+            best.as_avx512().map(|s| s.level()),
+        ];
+        all.into_iter().flatten().collect()
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    vec![best]
+}
+
+fn tiled(threads: usize, level: SimdLevel) -> TiledRasterizer {
+    TiledRasterizer::new(TiledSettings { threads, level })
+}
+
+fn draw(
+    rasterizer: &mut dyn Rasterizer,
+    size: [u32; 2],
+    mesh: &Mesh,
+    state: &State,
+    shading: &Shading<'_>,
+) -> (Buffers, Counters) {
+    let mut buffers = Buffers::with_ids(size[0], size[1]);
+    let counters = rasterizer.draw(&mut buffers.target().unwrap(), &mesh.primitives(), state, shading);
+    (buffers, counters)
+}
+
+fn bits(buffers: &Buffers) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
+    let color = buffers.color.pixels().iter().flatten().map(|v| v.to_bits()).collect();
+    (color, buffers.depth.iter().map(|v| v.to_bits()).collect(), buffers.ids.clone())
+}
+
+const SIZES: [[u32; 2]; 9] =
+    [[1, 1], [1, 37], [53, 1], [7, 9], [64, 64], [65, 63], [129, 200], [333, 77], [1021, 5]];
+
+fn states() -> Vec<State> {
+    let plain = State::default();
+    vec![
+        plain,
+        State { cull: Cull::Back, interpolation: Interpolation::Screen, ..plain },
+        State { cull: Cull::Front, depth_test: Compare::LessEqual, ..plain },
+        State { depth_test: Compare::Always, blend: Some(Blend::OVER), ..plain },
+        State {
+            depth_test: Compare::GreaterEqual,
+            clear: Some(Clear { depth: Some(0.0), ..Clear::default() }),
+            ..plain
+        },
+        State { interpolation: Interpolation::FlatFirst, depth_range: [0.25, 0.75], ..plain },
+        State { interpolation: Interpolation::FlatLast, depth_write: false, ..plain },
+        State { depth_bias: DepthBias { constant: 0.01, slope: 1.5 }, ..plain },
+        State {
+            viewport: Some(Viewport { x: 3.5, y: -4.25, width: 41.0, height: 60.5 }),
+            scissor: Some(Rect { x: 5, y: 2, width: 30, height: 400 }),
+            clear: Some(Clear::default()),
+            ..plain
+        },
+    ]
+}
+
+#[test]
+fn both_rasterizers_draw_the_same_at_every_size() {
+    let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };
+    for (k, size) in SIZES.into_iter().enumerate() {
+        let mesh = Mesh::random(k as u64 + 1, 120);
+        for (s, state) in states().into_iter().enumerate() {
+            let (a, ca) = draw(&mut ScanlineRasterizer, size, &mesh, &state, &shading);
+            let (b, cb) = draw(&mut TiledRasterizer::default(), size, &mesh, &state, &shading);
+            assert!(bits(&a) == bits(&b), "size {size:?}, state {s}");
+            assert_eq!(ca.primitives, 120);
+            assert_eq!(
+                (ca.invalid, ca.culled, ca.outside, ca.clipped, ca.drawn, ca.passed, ca.shaded),
+                (cb.invalid, cb.culled, cb.outside, cb.clipped, cb.drawn, cb.passed, cb.shaded)
+            );
+        }
+    }
+}
+
+#[test]
+fn levels_and_threads_do_not_change_a_byte() {
+    let mesh = Mesh::random(99, 9000);
+    let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };
+    let (reference, counters) =
+        draw(&mut tiled(1, SimdLevel::baseline()), [301, 190], &mesh, &State::default(), &shading);
+    for level in levels() {
+        for threads in [1, 2, 5] {
+            let (other, c) = draw(&mut tiled(threads, level), [301, 190], &mesh, &State::default(), &shading);
+            assert!(bits(&reference) == bits(&other), "{level:?}, {threads} threads");
+            assert_eq!(counters, c);
+        }
+    }
+}
+
+/// Discards some pixels and colours the others by what it is told about them.
+struct Probe;
+
+impl FragmentShader for Probe {
+    fn shade(&self, f: &Fragments<'_>, out: &mut Shaded) {
+        for i in f.lanes() {
+            let [dx, dy] = f.derivatives(&f.varyings[0], i);
+            out.set(i, [f.varyings[1][i], dx + dy, f.depth[i] + f32::from(u8::from(f.front)), f.id as f32]);
+            if (f.column(i) + 3 * f.row(i)).is_multiple_of(5) {
+                out.discard(i);
+            }
+        }
+    }
+}
+
+#[test]
+fn custom_shaders_see_the_same_fragments() {
+    for size in [[65, 63], [129, 200]] {
+        let mesh = Mesh::random(5, 100);
+        let shading = Shading::Custom(&Probe);
+        let (a, _) = draw(&mut ScanlineRasterizer, size, &mesh, &State::default(), &shading);
+        let (b, _) = draw(&mut TiledRasterizer::default(), size, &mesh, &State::default(), &shading);
+        assert!(bits(&a) == bits(&b), "{size:?}");
+    }
+}
+
+#[test]
+fn drawing_in_two_goes_equals_one() {
+    let mesh = Mesh::random(7, 400);
+    let shading = Shading::vertex_rgb();
+    let (one, _) = draw(&mut TiledRasterizer::default(), [200, 150], &mesh, &State::default(), &shading);
+    let mut two = Buffers::with_ids(200, 150);
+    let mut rasterizer = TiledRasterizer::default();
+    let all = mesh.primitives();
+    let (front, back) = mesh.indices.split_at(600);
+    for (indices, first) in [(front, 0), (back, 200)] {
+        let part = Primitives { indices, ids: Ids::From(first), ..all };
+        rasterizer.draw(&mut two.target().unwrap(), &part, &State::default(), &shading);
+    }
+    assert!(bits(&one) == bits(&two));
+}
+
+#[test]
+fn eight_bit_targets_agree() {
+    let mesh = Mesh::random(11, 300);
+    let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };
+    for blend in [None, Some(Blend::OVER), Some(Blend::ADD), Some(Blend::MULTIPLY)] {
+        let state = State {
+            blend,
+            clear: Some(Clear { color: Some([0.2, 0.4, 0.6, 0.8]), ..Clear::default() }),
+            ..State::default()
+        };
+        let picture = |rasterizer: &mut dyn Rasterizer| {
+            let (mut color, mut depth) = (vec![[0u8; 4]; 97 * 130], vec![1f32; 97 * 130]);
+            let mut target = Target::new(97, 130)
+                .and_then(|t| t.with_color(ColorPlane::Rgba8(&mut color)))
+                .and_then(|t| t.with_depth(&mut depth))
+                .unwrap();
+            rasterizer.draw(&mut target, &mesh.primitives(), &state, &shading);
+            color
+        };
+        assert!(picture(&mut ScanlineRasterizer) == picture(&mut TiledRasterizer::default()), "{blend:?}");
+    }
+}
+
+#[test]
+fn hostile_triangles_do_no_harm() {
+    let odd = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1e-40,
+        1e30,
+        -1e38,
+        f32::MAX,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+        1e-20,
+    ];
+    let mut r = Random(3);
+    let mut mesh = Mesh { positions: Vec::new(), varyings: Vec::new(), indices: Vec::new() };
+    for i in 0..6000u32 {
+        let mut pick = || odd[(r.next() * odd.len() as f32) as usize];
+        mesh.positions.push(Vec4::new(pick(), pick(), pick(), pick()));
+        let mut pick = || odd[(r.next() * odd.len() as f32) as usize];
+        mesh.varyings.extend([pick(), pick(), pick(), pick()]);
+        mesh.indices.push(if i % 97 == 0 { u32::MAX - i } else { i });
+    }
+    for shading in [Shading::vertex_rgb(), Shading::None, Shading::Custom(&Probe)] {
+        let (a, _) = draw(&mut ScanlineRasterizer, [70, 50], &mesh, &State::default(), &shading);
+        let (b, c) = draw(&mut TiledRasterizer::default(), [70, 50], &mesh, &State::default(), &shading);
+        assert_eq!((a.ids, a.depth), (b.ids, b.depth));
+        assert_eq!(c.primitives, 2000);
+        assert!(c.invalid > 62);
+    }
+    let empty =
+        Primitives { positions: &[], varyings: &[], stride: 0, indices: &[0, 1, 2, 3], ids: Ids::Same(1) };
+    let mut none = Buffers::new(0, 0);
+    let c = TiledRasterizer::default().draw(
+        &mut none.target().unwrap(),
+        &empty,
+        &State::default(),
+        &Shading::None,
+    );
+    assert_eq!((c.primitives, c.invalid), (1, 1));
+}
