@@ -8,9 +8,10 @@
 //! 2. Blocks of 8 x 8 pixels wholly outside an edge, or wholly behind what is there, are passed over.
 //! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
 
-use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
+use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, TextureUnit};
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
+use crate::sample::sample;
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::target::Clear;
 use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer};
@@ -35,6 +36,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) needs_depth: bool,
     /// How fragments are coloured.
     pub(crate) color: ColorPath,
+    /// The texture the colour is multiplied by, and the slot of u.
+    pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
     /// Which varyings are interpolated.
     pub(crate) slots: Vec<usize>,
 }
@@ -312,17 +315,16 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let bx = left.trailing_zeros() as i32;
             left &= left - 1;
             let place = Place { lane, block: (8 * by + bx) as usize & 63, pair: pair as usize & 3 };
-            if full >> bx & 1 == 1 {
-                self.vector(simd, place, &row, mask32x16::splat(simd, true), bx);
-                continue;
-            }
-            let b = &*self.batch;
-            let e0 = row.edges[0] + i32x16::splat(simd, b.edge_dx[0][lane].wrapping_mul(8 * bx));
-            let e1 = row.edges[1] + i32x16::splat(simd, b.edge_dx[1][lane].wrapping_mul(8 * bx));
-            let e2 = row.edges[2] + i32x16::splat(simd, b.edge_dx[2][lane].wrapping_mul(8 * bx));
-            let mut inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
-            if self.partial {
-                inside &= self.within_bounds(simd, bx * 8, y);
+            let mut inside = mask32x16::splat(simd, true);
+            if full >> bx & 1 == 0 {
+                let b = &*self.batch;
+                let e0 = row.edges[0] + i32x16::splat(simd, b.edge_dx[0][lane].wrapping_mul(8 * bx));
+                let e1 = row.edges[1] + i32x16::splat(simd, b.edge_dx[1][lane].wrapping_mul(8 * bx));
+                let e2 = row.edges[2] + i32x16::splat(simd, b.edge_dx[2][lane].wrapping_mul(8 * bx));
+                inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
+                if self.partial {
+                    inside &= self.within_bounds(simd, bx * 8, y);
+                }
             }
             self.vector(simd, place, &row, inside, bx);
         }
@@ -408,6 +410,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                     f32x16::load_array_ref(simd, b),
                     f32x16::load_array_ref(simd, a),
                 ]
+            }
+        };
+        let rgba = match self.pass.texture {
+            None => rgba,
+            Some((unit, slot)) => {
+                let at = self.at(simd, lane, fx, row.fy);
+                let texel = sample(simd, unit, self.batch, lane, slot, &at, pass);
+                [rgba[0] * texel[0], rgba[1] * texel[1], rgba[2] * texel[2], rgba[3] * texel[3]]
             }
         };
         self.counts.shaded += u64::from(bits.count_ones());

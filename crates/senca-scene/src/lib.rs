@@ -8,6 +8,7 @@
 mod animation;
 mod bounds;
 mod camera;
+mod counts;
 mod default_lights;
 mod faces;
 mod fog;
@@ -15,6 +16,7 @@ mod framing;
 mod ids;
 mod light;
 mod material;
+mod material_models;
 mod measure;
 mod mesh;
 mod mesh_check;
@@ -31,9 +33,11 @@ mod test_support;
 mod texture;
 mod topology;
 mod validate;
+mod weld;
 
 pub use animation::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation};
 pub use camera::{Camera, Projection};
+pub use counts::SceneCounts;
 pub use default_lights::{DefaultLights, default_lights};
 pub use faces::{is_flat_quad, split_quad};
 pub use fog::{Fog, FogFalloff};

@@ -121,6 +121,8 @@ fn sphere_error(mesh: &Mesh, radius: f64) -> f64 {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
     #[test]
     fn spheres_stay_within_the_tolerance(radius in 0.1f64..50.0, share in 0.0005f64..0.2) {
         let tolerance = share * radius;
