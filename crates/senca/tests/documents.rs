@@ -9,6 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use common::{copy_folder, repository, senca_folder};
+use senca::Image;
+use senca::io::Limits;
+use senca::io::images::decode_picture;
+use senca::math::{LinearRgb, Srgb8};
 
 /// Commands that are not run here, because they build or measure: the builds run in `.ci/run`, the
 /// measurements in `cli.rs`, with less patience.
@@ -24,6 +28,7 @@ const CHECKED_ELSEWHERE: &[&str] = &[
     "cargo bench --workspace",
     "cargo +nightly fuzz run",
     "senca bench",
+    "cargo bench",
 ];
 
 /// What stands before a command of ours when it is built on the spot.
@@ -115,6 +120,60 @@ fn every_command_of_every_document_works() {
             let folder = copy_of_repository();
             commands.iter().for_each(|c| run(c, folder.path()));
         }
+    }
+}
+
+/// How far apart two pictures are: the mean difference of a component, and the share of pixels that
+/// differ visibly, both in units of the display's range. `None` when their sizes differ.
+fn difference(a: &Image, b: &Image) -> Option<(f64, f64)> {
+    if (a.width(), a.height()) != (b.width(), b.height()) {
+        return None;
+    }
+    let encoded = |image: &Image, i: usize| {
+        let [r, g, b, _] = image.pixels()[i];
+        let Srgb8 { r, g, b } = LinearRgb::new(r, g, b).to_srgb8();
+        [r, g, b]
+    };
+    let (mut sum, mut visible) = (0.0, 0.0);
+    for i in 0..a.pixels().len() {
+        let apart =
+            encoded(a, i).iter().zip(encoded(b, i)).map(|(x, y)| f64::from(x.abs_diff(y))).sum::<f64>();
+        sum += apart / (3.0 * 255.0);
+        visible += f64::from(u8::from(apart > 24.0));
+    }
+    let pixels = a.pixels().len() as f64;
+    Some((sum / pixels, visible / pixels))
+}
+
+fn picture(path: &Path) -> Image {
+    let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    decode_picture(&path.display().to_string(), &bytes, &Limits::default()).expect("a picture")
+}
+
+#[test]
+fn the_gallery_is_made_by_its_commands() {
+    let gallery = repository().join("docs/gallery");
+    let text = std::fs::read_to_string(gallery.join("README.md")).expect("a text");
+    let folder = copy_of_repository();
+    commands(&text).iter().filter_map(|c| runnable(c)).for_each(|c| run(&c, folder.path()));
+    let mut made: Vec<PathBuf> = text
+        .split_whitespace()
+        .filter_map(|word| word.strip_prefix("docs/gallery/"))
+        .map(|name| Path::new("docs/gallery").join(name))
+        .collect();
+    made.sort();
+    assert!(made.len() > 30, "only {} pictures", made.len());
+    for path in made {
+        let (fresh, shown) = (folder.path().join(&path), repository().join(&path));
+        if std::env::var_os("REPLACE").is_some() {
+            std::fs::copy(&fresh, &shown).expect("a copy");
+        } else if path.extension().is_some_and(|e| e == "png") {
+            let difference = difference(&picture(&fresh), &picture(&shown));
+            let alike = difference.is_some_and(|(mean, visible)| mean < 0.002 && visible < 0.005);
+            assert!(alike, "{} differs from the one shown: {difference:?} (mean, share)", path.display());
+        }
+        let bytes = std::fs::metadata(&shown).expect("a picture").len();
+        assert!(bytes <= 61_440, "{} has {bytes} bytes; 60 KiB are the limit", path.display());
     }
 }
 
