@@ -7,7 +7,7 @@ use senca_scene::Scene;
 
 use crate::files::read_limited;
 use crate::toml_scene::{self, RenderHints, SceneFile};
-use crate::{Directory, Files, Limits, Location, ReadError, gltf, obj, ply, stl};
+use crate::{Directory, Files, Limits, Location, ReadError, classic, gltf, obj, ply, stl};
 
 /// Formats that scenes are read from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,6 +22,12 @@ pub enum SceneFormat {
     Stl,
     /// Polygon file format, text or binary.
     Ply,
+    /// Scene file of 1991.
+    Scene1991,
+    /// Object file of 1991.
+    Object1991,
+    /// Patch file of 1991.
+    Patches1991,
 }
 
 impl fmt::Display for SceneFormat {
@@ -32,6 +38,9 @@ impl fmt::Display for SceneFormat {
             Self::Obj => "OBJ",
             Self::Stl => "STL",
             Self::Ply => "PLY",
+            Self::Scene1991 => "scene file of 1991",
+            Self::Object1991 => "object file of 1991",
+            Self::Patches1991 => "patch file of 1991",
         })
     }
 }
@@ -61,7 +70,7 @@ impl SceneFormat {
         }
         let of_text = || Self::of_text(&bytes[..bytes.len().min(HEAD)]);
         let toml = toml_scene::is_scene_file(bytes).then_some(Self::Toml);
-        toml.or_else(of_text).or_else(|| Self::of_name(name))
+        toml.or_else(|| of_numbers(bytes)).or_else(of_text).or_else(|| Self::of_name(name))
     }
 
     /// The format of a text whose beginning is `head`; `None` when it is not a text.
@@ -92,8 +101,29 @@ impl SceneFormat {
             "obj" => Self::Obj,
             "stl" => Self::Stl,
             "ply" => Self::Ply,
+            "bez" => Self::Patches1991,
+            "dat" => Self::Object1991,
             _ => return None,
         })
+    }
+}
+
+/// Which of the files of 1991, that begin with numbers, this is. A scene file has one number in its
+/// first line, the projection; the others a header of three or four. Of these a patch file's first
+/// record behind the points has 16 corners.
+fn of_numbers(bytes: &[u8]) -> Option<SceneFormat> {
+    let line_end = bytes.iter().position(|&b| b == b'\n').unwrap_or(bytes.len());
+    let first_line = str::from_utf8(bytes.get(..line_end.min(HEAD))?).ok()?;
+    let header = first_line.split_whitespace().map_while(|w| w.parse::<u32>().ok()).collect::<Vec<_>>();
+    match *header.as_slice() {
+        [0 | 1] => Some(SceneFormat::Scene1991),
+        [points, _, _] | [points, _, _, _] => {
+            let rest = str::from_utf8(&bytes[line_end..]).ok()?;
+            let mut numbers = rest.split_whitespace().map_while(|w| w.parse::<f64>().ok());
+            let corners = numbers.nth((points as usize).saturating_mul(4).saturating_add(2));
+            Some(if corners == Some(16.0) { SceneFormat::Patches1991 } else { SceneFormat::Object1991 })
+        }
+        _ => None,
     }
 }
 
@@ -126,6 +156,9 @@ pub fn read_scene_and_hints(name: &str, bytes: &[u8], files: &dyn Files) -> Resu
         Some(SceneFormat::Obj) => obj::read(name, bytes, files)?,
         Some(SceneFormat::Stl) => stl::read(name, bytes, files)?,
         Some(SceneFormat::Ply) => ply::read(name, bytes, files)?,
+        Some(SceneFormat::Scene1991) => classic::read_scene(name, bytes, files)?,
+        Some(SceneFormat::Object1991) => classic::read_object(name, bytes, files)?,
+        Some(SceneFormat::Patches1991) => classic::read_patches(name, bytes, files)?,
         None => {
             let message = "is no scene or model of a known format (TOML scene, glTF, OBJ, STL, PLY, \
                            1991 files)";
@@ -171,6 +204,9 @@ mod tests {
             (b"solid a\nfacet normal 0 0 1\n", SceneFormat::Stl),
             (b"# a remark\n\nv 0 0 0\n", SceneFormat::Obj),
             (b"mtllib a.mtl\r\n", SceneFormat::Obj),
+            (b"1 {perspective}\n60.0\n", SceneFormat::Scene1991),
+            (b"1 1 1\n0 0 0 0\n0 0 16 0 0", SceneFormat::Patches1991),
+            (b"3 1 1 1\n0 0 0 0\n1 1 0 0\n2 0 1 0\n0 0 3 0 1 2\n", SceneFormat::Object1991),
             (b"# a scene\n[camera]\n", SceneFormat::Toml),
             (b"name = \"house\"\n", SceneFormat::Toml),
             (&binary_stl, SceneFormat::Stl),

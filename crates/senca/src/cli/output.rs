@@ -47,11 +47,17 @@ fn plain(error: &std::io::Error) -> String {
 /// Writes `bytes` to `path` at once or, after Ctrl-C, not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Failure> {
     let go_on = || !interrupt.is_raised();
-    interrupt.while_writing(|| write_file_while(path, bytes, &go_on)).map_err(|error| match error {
-        WriteError::Io { path, source } if is_standard(&path) => {
-            Failure::from_io(source.kind(), format!("standard output: {source}"))
+    interrupt.while_writing(|| {
+        // Asked before a file is begun: the process may be about to end.
+        if !go_on() {
+            return Err(Failure::Interrupted);
         }
-        other => other.into(),
+        write_file_while(path, bytes, &go_on).map_err(|error| match error {
+            WriteError::Io { path, source } if is_standard(&path) => {
+                Failure::from_io(source.kind(), format!("standard output: {source}"))
+            }
+            other => other.into(),
+        })
     })
 }
 

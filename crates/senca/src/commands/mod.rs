@@ -1,6 +1,7 @@
 //! The subcommands, one file each.
 
 mod bench;
+mod convert;
 mod info;
 mod render;
 mod view_matrix;
@@ -23,6 +24,8 @@ enum Command {
     Render(Box<render::Arguments>),
     /// Tells what is in a scene or a model
     Info(info::Arguments),
+    /// Writes a model, or a picture, in another format
+    Convert(convert::Arguments),
     /// Prints the partial matrices of a viewing operation and their product
     ViewMatrix(view_matrix::Arguments),
     /// Measures this program on data it makes itself
@@ -34,6 +37,7 @@ pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
     match senca.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::ViewMatrix(arguments) => view_matrix::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     }
