@@ -29,12 +29,12 @@ impl<'f> IncludedFiles<'f> {
         Self { outer, folder, uri, includer }
     }
 
-    /// Content of the included file itself.
-    pub(super) fn read_included(&self) -> Result<Vec<u8>, ReadError> {
+    /// Content of the included file itself, by the name that was given for it.
+    pub(super) fn read_included(&self, given: &str) -> Result<Vec<u8>, ReadError> {
         if self.uri == self.includer {
             return Err(ReadError::malformed(Location::file(&self.uri), "includes itself"));
         }
-        self.outer.read(&self.uri)
+        self.outer.read(given)
     }
 }
 

@@ -199,6 +199,32 @@ proptest! {
     }
 
     #[test]
+    fn many_holes_are_left_out(
+        radii in prop::collection::vec(prop::collection::vec(0.05..0.49f64, 3..12), 1..40),
+        turn in 0.0..6.0f64,
+        aligned in any::<bool>(),
+    ) {
+        let turn = DVec2::from_angle(if aligned { 0.0 } else { turn });
+        let side = (radii.len() as f64).sqrt().ceil();
+        let mut corners = points(&[[-0.5, -0.5], [side - 0.5, -0.5], [side - 0.5, side - 0.5], [-0.5, side - 0.5]]);
+        let mut starts = Vec::new();
+        let mut area = side * side;
+        for (k, hole) in radii.iter().enumerate() {
+            let center = DVec2::new(k as f64 % side, (k as f64 / side).floor());
+            let step = std::f64::consts::TAU / hole.len() as f64;
+            let star: Vec<_> =
+                hole.iter().enumerate().map(|(i, r)| center + DVec2::from_angle(step * i as f64) * *r).collect();
+            area -= signed_area(&star);
+            starts.push(corners.len());
+            corners.extend(star);
+        }
+        corners.iter_mut().for_each(|p| *p = turn.rotate(*p));
+        let triangles = triangulate_with_holes(&corners, &starts);
+        prop_assert_eq!(triangles.len(), corners.len() - 2 + 2 * starts.len());
+        assert_covers(&corners, &triangles, area);
+    }
+
+    #[test]
     fn any_loop_ends_with_valid_indices(
         raw in prop::collection::vec((0..12i32, 0..12i32), 0..80),
         starts in prop::collection::vec(0..90usize, 0..4),

@@ -138,13 +138,13 @@ impl Output {
     }
 }
 
-/// A colour in [0, 1], and an intensity that makes up for what is above (a power of two, so that no
-/// bit is lost).
+/// A colour whose largest component is 1, and the intensity that makes up for it. Their product, in
+/// double precision, rounds back to the same bits.
 fn set_color(json: &mut Map<String, Value>, color: LinearRgb) {
-    let color = color.map(|v| if v.is_finite() { v.max(0.0) } else { 0.0 });
-    let largest = color.max_component();
-    let intensity = if largest > 1.0 { largest.log2().ceil().exp2() } else { 1.0 };
-    set(json, "color", numbers(&(color * (1.0 / intensity)).to_array()));
+    let color = color.to_array().map(|v| if v.is_finite() { f64::from(v.max(0.0)) } else { 0.0 });
+    let largest = color.into_iter().fold(0.0, f64::max);
+    let intensity = if largest > 0.0 { largest } else { 1.0 };
+    set(json, "color", numbers(&color.map(|v| v / intensity)));
     set(json, "intensity", json!(intensity));
 }
 
