@@ -5,8 +5,10 @@
 //! takes memory out of proportion to its input. Every writer fills a buffer; [`write_file`] puts it
 //! in place at once or not at all.
 
+pub mod classic;
 mod error;
 mod files;
+mod flatten;
 pub mod gltf;
 pub mod images;
 mod mtl;
@@ -14,7 +16,9 @@ mod normals;
 pub mod obj;
 mod output;
 pub mod ply;
+mod scene_file;
 pub mod stl;
+pub mod svg;
 mod text;
 pub mod toml_scene;
 mod weld;
@@ -22,4 +26,7 @@ mod weld;
 pub use error::{Location, ReadError, WriteError};
 use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
-pub use output::write_file;
+pub use output::{write_file, write_file_while};
+pub use scene_file::{
+    SceneFormat, read_scene, read_scene_and_hints, read_scene_file, read_scene_file_and_hints,
+};

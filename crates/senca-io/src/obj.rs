@@ -1,7 +1,8 @@
 //! Wavefront OBJ (Alias|Wavefront, Advanced Visualizer manual, appendix B1).
 //!
-//! 1. Each object (`o`) becomes a geometry with a node; each combination of group, material and
-//!    smoothing group in it becomes a [`Surface`](senca_scene::Surface).
+//! 1. Each object (`o`) becomes a geometry with a node; each combination of material and smoothing
+//!    group in it becomes a [`Surface`](senca_scene::Surface), which has the name of its group (`g`)
+//!    if it is the only one there.
 //! 2. Faces stay polygons, convex or not. Faces with fewer than three corners are left out with a
 //!    warning.
 //! 3. Normals that the file gives are normalized; missing ones stay missing. Faces of one smoothing
@@ -20,6 +21,9 @@ mod build;
 mod parse;
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub use write::{ObjOutput, write};
 
 use senca_scene::Scene;
 

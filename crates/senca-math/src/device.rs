@@ -229,6 +229,15 @@ impl View {
         Some(device.device_from_normalized(normalized(clip).finite()?))
     }
 
+    /// The window that fits all these world points into the picture: the rectangle around their
+    /// projections in the normalised volume. Points not before the eye are passed over; `None` when
+    /// no point is left. Source: course text, section 1.8.
+    #[must_use]
+    pub fn window_around(&self, points_world: impl IntoIterator<Item = DVec3>) -> Option<Rect> {
+        let clip = points_world.into_iter().map(|p| self.clip_from_world * p.extend(1.0));
+        Rect::around(clip.filter(|c| c.w > 0.0).filter_map(|c| normalized(c).finite()))
+    }
+
     /// The world point that lies at this place of the device and at this window depth (0 near, 1
     /// far); `None` for a point at infinity. Source: course text, section 1.9.
     #[must_use]
@@ -371,6 +380,18 @@ mod tests {
         let single = Rect::around([vec3(1, 1, 1)]).unwrap().grown_to_aspect(1.0);
         let fitted = DeviceMap::to_pixels(8, 8).unwrap().cut_out(single).unwrap();
         assert_close3(fitted.device_from_normalized(vec3(1, 1, 0)), vec3(4, 4, 0), 1e-6);
+    }
+
+    #[test]
+    fn a_window_around_projected_points_fits_them_all() {
+        let frame = View::look_at(vec3(0, 0, 10), DVec3::ZERO, DVec3::Y).unwrap();
+        let view = View::perspective(&frame, 1.0, 1.0, 0.1, None).unwrap();
+        let points = [vec3(1, 2, 0), vec3(-1, 5, 3), vec3(4, 0, -9), vec3(0, 0, 20)];
+        let window = view.window_around(points).unwrap();
+        let device = DeviceMap::to_pixels(100, 50).unwrap().cut_out(window).unwrap();
+        let seen = Rect::around(points.iter().filter_map(|p| view.device_from_world(&device, *p))).unwrap();
+        assert!((seen.min.length() + (seen.max - DVec2::new(100.0, 50.0)).length()) < 1e-12);
+        assert!(view.window_around([vec3(0, 0, 20)]).is_none());
     }
 
     #[test]

@@ -4,6 +4,31 @@
 //! [`glam`]'s, which multiplies column vectors from the left: a matrix that takes world points to
 //! view points is called `view_from_world`, and `clip_from_view * view_from_world` checks itself.
 //! Where a book prints row vectors, the printing routine transposes on the way out.
+//!
+//! | subject | modules |
+//! |---|---|
+//! | maps and frames | [`transform`], [`frame`], [`projective`], [`row_matrix`] |
+//! | what cameras see | [`view`], [`view_file`], [`device`] |
+//! | flat things | [`mod@line`], [`plane`], [`polygon`], [`ray`], [`aabb`] |
+//! | curved things | [`bezier`], [`nurbs`], [`roots`] |
+//! | pictures | [`mod@color`], [`hls`], [`mod@image`] |
+//!
+//! From the scene to a pixel, and back:
+//!
+//! ```
+//! use senca_math::glam::DVec3;
+//! use senca_math::{DeviceMap, View, pixel_center};
+//!
+//! let device = DeviceMap::to_pixels(640, 480)?;
+//! let camera = View::look_at(DVec3::new(3.0, 2.0, 5.0), DVec3::ZERO, DVec3::Y)?;
+//! let view = View::perspective(&camera, 0.8, device.aspect(), 0.1, None)?;
+//!
+//! let seen = view.device_from_world(&device, DVec3::ZERO).ok_or("behind the eye")?;
+//! assert!((seen.truncate() - DVec3::new(320.0, 240.0, 0.0).truncate()).length() < 1e-9);
+//! let ray = view.ray_through(&device, pixel_center(320, 240)).ok_or("too large")?;
+//! assert!(ray.direction.dot(DVec3::new(-3.0, -2.0, -5.0).normalize()) > 0.999);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod aabb;
 pub mod bezier;
@@ -43,7 +68,7 @@ pub use polygon::{newell_normal, triangulate, triangulate_in_space, triangulate_
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
 pub use ray::Ray;
 pub use roots::{Roots, cubic_roots, quadratic_roots, quartic_roots};
-pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows};
+pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows, named_json, named_text};
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{
     CentralByNormal, Lens, LookAtCamera, Normalization1991, ParallelByNormal, View, View1991, ViewError,

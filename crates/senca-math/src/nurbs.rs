@@ -70,7 +70,7 @@ impl NurbsCurve {
     pub fn at_with_derivative(&self, t: f64) -> (DVec3, DVec3) {
         let basis = self.knots.basis(t);
         let points = &self.points[basis.first..];
-        let (value, slope) = (sum(&basis.values, points), sum(&basis.derivatives, points));
+        let (value, slope) = (sum(basis.values(), points), sum(basis.derivatives(), points));
         let position = value.truncate() / value.w;
         (position, (slope.truncate() - position * slope.w) / value.w)
     }

@@ -52,6 +52,24 @@ pub fn json_rows(m: &DMat4) -> String {
     json + "]"
 }
 
+/// Named matrices as text: each name on a line of its own, the matrix under it as by
+/// [`aligned_text`], a blank line between.
+#[must_use]
+pub fn named_text(matrices: &[(String, DMat4)], decimals: usize) -> String {
+    let blocks: Vec<_> =
+        matrices.iter().map(|(name, m)| format!("{name}\n{}", aligned_text(m, decimals))).collect();
+    blocks.join("\n")
+}
+
+/// Named matrices as a JSON object of [`json_rows`], in their order, a name to a line. Names must
+/// need no escapes, as those of the viewing operations.
+#[must_use]
+pub fn named_json(matrices: &[(String, DMat4)]) -> String {
+    let members: Vec<_> =
+        matrices.iter().map(|(name, m)| format!("  \"{name}\": {}", json_rows(m))).collect();
+    format!("{{\n{}\n}}\n", members.join(",\n"))
+}
+
 fn cell(v: f64, decimals: usize) -> String {
     if v.abs() >= 1e9 {
         return format!("{v:.decimals$e}");
@@ -90,6 +108,15 @@ mod tests {
         ];
         assert_eq!(text.lines().collect::<Vec<_>>(), expected);
         assert!(aligned_text(&translation(DVec3::X * 2e12), 2).contains("2.00e12"));
+    }
+
+    #[test]
+    fn named_matrices_stand_one_under_the_other() {
+        let both = [("T1".to_owned(), DMat4::IDENTITY), ("T".to_owned(), DMat4::IDENTITY)];
+        let text = named_text(&both, 0);
+        assert!(text.starts_with("T1\n1  0  0  0\n0  1  0  0\n") && text.contains("0  0  0  1\n\nT\n1  0"));
+        let rows = "[[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]";
+        assert_eq!(named_json(&both), format!("{{\n  \"T1\": {rows},\n  \"T\": {rows}\n}}\n"));
     }
 
     #[test]

@@ -173,6 +173,9 @@ fn perspective(fov_y: f32, near: f32, far: f32) -> Mat4 {
     )
 }
 
+/// Vertices done together: points, normals, and where positions and colours go.
+type Part<'a> = (((&'a [Vec3], &'a [Vec3]), &'a mut [Vec4]), &'a mut [f32]);
+
 /// A mesh lit per vertex in every frame, as fixed-function OpenGL lights it.
 struct LitMesh {
     mesh: Mesh,
@@ -195,20 +198,17 @@ impl LitMesh {
         let half = (light + Vec3::Z).normalize();
         let color = Vec3::new(0.7, 0.6, 0.5);
         let step = 2048;
-        let lit =
-            |(((points, normals), positions), colors): (((&[Vec3], &[Vec3]), &mut [Vec4]), &mut [f32])| {
-                let colors = colors.chunks_exact_mut(3);
-                for (((point, normal), position), out) in
-                    points.iter().zip(normals).zip(positions).zip(colors)
-                {
-                    *position = clip_from_object * point.extend(1.0);
-                    let normal = view_from_object.transform_vector3(*normal);
-                    let diffuse = normal.dot(light).max(0.0);
-                    let shine = if diffuse > 0.0 { normal.dot(half).max(0.0).powi(32) } else { 0.0 };
-                    let c = color * (0.3 + 0.9 * diffuse) + 0.5 * shine;
-                    out.copy_from_slice(&c.min(Vec3::ONE).to_array());
-                }
-            };
+        let lit = |(((points, normals), positions), colors): Part<'_>| {
+            let colors = colors.chunks_exact_mut(3);
+            for (((point, normal), position), out) in points.iter().zip(normals).zip(positions).zip(colors) {
+                *position = clip_from_object * point.extend(1.0);
+                let normal = view_from_object.transform_vector3(*normal);
+                let diffuse = normal.dot(light).max(0.0);
+                let shine = if diffuse > 0.0 { normal.dot(half).max(0.0).powi(32) } else { 0.0 };
+                let c = color * (0.3 + 0.9 * diffuse) + 0.5 * shine;
+                out.copy_from_slice(&c.min(Vec3::ONE).to_array());
+            }
+        };
         let (points, normals) = (self.mesh.points.chunks(step), self.mesh.normals.chunks(step));
         if threads == 1 {
             let positions = self.positions.chunks_mut(step);

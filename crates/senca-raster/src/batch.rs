@@ -306,9 +306,8 @@ impl Batch {
             self.edge_dx[k][lane] = edges.dx[k];
             self.edge_dy[k][lane] = edges.dy[k];
         }
-        for k in 0..2 {
-            self.offset[k][lane] = first[k] - setup.reference[k];
-        }
+        self.offset[0][lane] = first[0] - setup.reference[0];
+        self.offset[1][lane] = first[1] - setup.reference[1];
         (self.z_min[lane], self.z_max[lane]) = (setup.z_min, setup.z_max);
         let planes = [&mut self.depth, &mut self.b1, &mut self.b2, &mut self.inv_w];
         for (to, from) in planes.into_iter().zip([setup.z, setup.b1, setup.b2, setup.q]) {

@@ -8,9 +8,10 @@
 //! 2. Blocks of 8 x 8 pixels wholly outside an edge, or wholly behind what is there, are passed over.
 //! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
 
-use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
+use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, TextureUnit};
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
+use crate::sample::sample;
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::target::Clear;
 use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer};
@@ -35,6 +36,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) needs_depth: bool,
     /// How fragments are coloured.
     pub(crate) color: ColorPath,
+    /// The texture the colour is multiplied by, and the slot of u.
+    pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
     /// Which varyings are interpolated.
     pub(crate) slots: Vec<usize>,
 }
@@ -312,17 +315,16 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let bx = left.trailing_zeros() as i32;
             left &= left - 1;
             let place = Place { lane, block: (8 * by + bx) as usize & 63, pair: pair as usize & 3 };
-            if full >> bx & 1 == 1 {
-                self.vector(simd, place, &row, mask32x16::splat(simd, true), bx);
-                continue;
-            }
-            let b = &*self.batch;
-            let e0 = row.edges[0] + i32x16::splat(simd, b.edge_dx[0][lane].wrapping_mul(8 * bx));
-            let e1 = row.edges[1] + i32x16::splat(simd, b.edge_dx[1][lane].wrapping_mul(8 * bx));
-            let e2 = row.edges[2] + i32x16::splat(simd, b.edge_dx[2][lane].wrapping_mul(8 * bx));
-            let mut inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
-            if self.partial {
-                inside &= self.within_bounds(simd, bx * 8, y);
+            let mut inside = mask32x16::splat(simd, true);
+            if full >> bx & 1 == 0 {
+                let b = &*self.batch;
+                let e0 = row.edges[0] + i32x16::splat(simd, b.edge_dx[0][lane].wrapping_mul(8 * bx));
+                let e1 = row.edges[1] + i32x16::splat(simd, b.edge_dx[1][lane].wrapping_mul(8 * bx));
+                let e2 = row.edges[2] + i32x16::splat(simd, b.edge_dx[2][lane].wrapping_mul(8 * bx));
+                inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
+                if self.partial {
+                    inside &= self.within_bounds(simd, bx * 8, y);
+                }
             }
             self.vector(simd, place, &row, inside, bx);
         }
@@ -408,6 +410,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                     f32x16::load_array_ref(simd, b),
                     f32x16::load_array_ref(simd, a),
                 ]
+            }
+        };
+        let rgba = match self.pass.texture {
+            None => rgba,
+            Some((unit, slot)) => {
+                let at = self.at(simd, lane, fx, row.fy);
+                let texel = sample(simd, unit, self.batch, lane, slot, &at, pass);
+                [rgba[0] * texel[0], rgba[1] * texel[1], rgba[2] * texel[2], rgba[3] * texel[3]]
             }
         };
         self.counts.shaded += u64::from(bits.count_ones());
@@ -557,5 +567,51 @@ fn compare<S: Simd>(simd: S, test: Compare, new: f32x16<S>, stored: f32x16<S>) -
         Compare::NotEqual => new.simd_ne(stored),
         Compare::GreaterEqual => new.simd_ge(stored),
         Compare::Always => mask32x16::splat(simd, true),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bin::TILE;
+    use crate::setup::GUARD;
+
+    /// The edge function at the centre of a pixel, exactly, less one where the edge does not own it.
+    fn exact(v: &[ScreenVertex; 3], k: usize, [x, y]: [i64; 2]) -> i64 {
+        let (a, b) = (&v[k], &v[(k + 1) % 3]);
+        let (ex, ey) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
+        let (cx, cy) = (x * i64::from(SUB) + i64::from(HALF), y * i64::from(SUB) + i64::from(HALF));
+        let owns = ey < 0 || (ey == 0 && ex > 0);
+        ex * (cy - i64::from(a.y)) - ey * (cx - i64::from(a.x)) - i64::from(!owns)
+    }
+
+    #[test]
+    fn edge_value_fits() {
+        // Corners at the very ends of the guard band, tiles all over it.
+        let g = GUARD as i32;
+        let ends = [-g, -g + 1, -77, 0, 1, 129, g - 1, g];
+        let area = Bounds { x0: 0, y0: 0, x1: TILE as i32, y1: TILE as i32 };
+        let mut seen = 0;
+        for n in 0..8usize.pow(3) {
+            let at = |k: u32| ends[n / 8usize.pow(k) % 8];
+            let corner = |x: i32, y: i32| ScreenVertex { x, y, z: 0.5, inv_w: 1.0 };
+            let v = [corner(at(0), at(1)), corner(at(1), at(2)), corner(at(2), -at(0))];
+            let v = if crate::setup::double_area(&v) < 0 { [v[0], v[2], v[1]] } else { v };
+            for tile in [[-32_704, -32_704], [-64, 0], [0, 0], [32_640, -64], [64, 32_640]] {
+                let Some(edges) = TileEdges::new(&v, tile, &area) else {
+                    continue;
+                };
+                for (k, x, y) in [(0, 0, 0), (1, 63, 0), (2, 0, 63), (0, 63, 63), (1, 31, 7), (2, 63, 63)] {
+                    let value = i64::from(edges.c[k])
+                        + i64::from(edges.dx[k]) * i64::from(x)
+                        + i64::from(edges.dy[k]) * i64::from(y);
+                    assert!(i32::try_from(value).is_ok(), "{v:?} {tile:?}");
+                    let exact = exact(&v, k, [i64::from(tile[0] + x), i64::from(tile[1] + y)]);
+                    assert_eq!(value >= 0, exact >= 0, "{v:?} {tile:?} edge {k} at {x}, {y}");
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 1000);
     }
 }

@@ -12,6 +12,7 @@ pub mod clip;
 mod cover;
 mod lines;
 mod pixel;
+mod sample;
 pub mod scanline;
 mod setup;
 mod shade;

@@ -11,6 +11,9 @@ use senca_math::Image;
 /// Longest side of a texture, in texels.
 pub const MAX_TEXTURE_SIDE: u32 = 1 << 15;
 
+/// Coordinates, in texels, are held within this of 0, so that texel numbers fit 32 bits.
+pub(crate) const FARTHEST_TEXEL: f32 = 1e9;
+
 /// Why texels do not make a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextureError {
@@ -391,7 +394,7 @@ impl Sampler {
 
     fn position(&self, u: f32, n: u32) -> f32 {
         let p = self.grid.position(u, n);
-        if p.is_finite() { p } else { 0.0 }
+        if p.is_nan() { 0.0 } else { p.clamp(-FARTHEST_TEXEL, FARTHEST_TEXEL) }
     }
 
     fn texel(&self, level: &TextureLevel, x: i64, y: i64) -> [f32; 4] {

@@ -141,6 +141,13 @@ fn pass<'a>(
     let color = ColorPath::of(shading, format);
     let custom = color == ColorPath::Plain;
     let hides_farther = has_depth && matches!(state.depth_test, Compare::Less | Compare::LessEqual);
+    let slots = slots(shading, color, triangles.stride);
+    let texture = match shading {
+        Shading::Fixed { texture: Some(unit), .. } if color != ColorPath::None => {
+            Some((unit, slots.len() - 2))
+        }
+        _ => None,
+    };
     Pass {
         map,
         state,
@@ -155,7 +162,8 @@ fn pass<'a>(
         lowers_farthest: hides_farther && state.depth_write && !custom,
         needs_depth: has_depth || custom,
         color,
-        slots: slots(shading, color, triangles.stride),
+        texture,
+        slots,
     }
 }
 
@@ -245,33 +253,33 @@ impl Frame<'_> {
                 partial: bounds != whole,
                 counts,
             };
-            for run in self.runs {
-                self.draw_run(simd, &mut draw, run, tile);
+            let mut references =
+                self.runs.iter().flat_map(|run| run.of_tile(tile).iter().map(move |r| (run, r)));
+            while self.fill(draw.batch, &mut references) {
+                draw.flush(simd);
             }
-            draw.flush(simd);
             counts = draw.counts;
             scratch.tile.store(band, x as usize, clear, self.pass.writes_depth);
         }
         counts
     }
 
+    /// Fills the batch; whether there was anything to fill it with.
     #[inline(always)]
-    fn draw_run<S: Simd, const FAST: bool>(
+    fn fill<'r>(
         &self,
-        simd: S,
-        draw: &mut TileDraw<'_, '_, FAST>,
-        run: &Run,
-        tile: usize,
-    ) {
-        for reference in run.of_tile(tile) {
+        batch: &mut Batch,
+        references: &mut impl Iterator<Item = (&'r Run, &'r Reference)>,
+    ) -> bool {
+        while batch.len < LANES
+            && let Some((run, reference)) = references.next()
+        {
             match reference.piece() {
-                None => self.fetch(draw.batch, reference),
-                Some(k) => self.fetch_piece(draw.batch, run, k),
-            }
-            if draw.batch.len == LANES {
-                draw.flush(simd);
+                None => self.fetch(batch, reference),
+                Some(k) => self.fetch_piece(batch, run, k),
             }
         }
+        batch.len > 0
     }
 
     /// Puts a triangle into the batch.

@@ -11,10 +11,10 @@
 
 use std::collections::HashMap;
 
-use senca_math::glam::{DVec2, DVec3};
+use senca_math::BicubicPatch;
+use senca_math::glam::DVec3;
 
-use crate::tessellate::{MAX_FACES, on_patch};
-use crate::{BezierPatch, Mesh, ShapeError, Surface};
+use crate::{BezierPatch, MAX_FACES, Mesh, ShapeError, Surface};
 
 /// Settings of the converter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,11 +117,12 @@ pub fn patch_to_polygons(patches: &[BezierPatch], settings: &PatchConversion) ->
     let mut vertices = HashMap::new();
     let mut mesh = Mesh::default();
     for patch in patches {
+        let form = BicubicPatch::from_list(patch.points);
         for n in 0..us * vs {
-            let corner = DVec2::new(f64::from(n % us) * du, f64::from(n / us) * dv);
-            let around = [(0.0, 0.0), (du, 0.0), (du, dv), (0.0, dv)];
+            let (u, v) = (f64::from(n % us) * du, f64::from(n / us) * dv);
+            let around = [(u, v), (u + du, v), (u + du, v + dv), (u, v + dv)];
             let quad = around.map(|(u, v)| {
-                let point = found.enter(on_patch(&patch.points, corner + DVec2::new(u, v)));
+                let point = found.enter(form.at(u, v));
                 *vertices.entry((point, patch.surface)).or_insert_with(|| {
                     mesh.vertices.point.push(point);
                     mesh.vertices.point.len() as u32 - 1

@@ -17,7 +17,6 @@
 //! Flat shapes are exact with as few faces as they have sides and are not divided further.
 
 mod build;
-mod ears;
 mod lathe;
 mod nurbs;
 mod patches;
@@ -31,7 +30,6 @@ use std::borrow::Cow;
 
 use crate::{Mesh, NormalSettings, Shape};
 
-pub(crate) use patches::on_patch;
 pub use polygon::triangulated;
 pub use revolution::CREASE as REVOLUTION_CREASE;
 pub use tolerance::{PixelTolerance, Tolerance};

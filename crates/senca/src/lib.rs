@@ -1,1 +1,39 @@
-//! A 3-D rendering system that needs no GPU: library and command.
+//! A 3-D rendering system that needs no GPU.
+//!
+//! This crate is the front door: it names the rooms of the house and joins them. The rooms are
+//! crates of their own, reachable as modules here: [`math`], [`scene`], [`io`], [`shading`],
+//! [`raster`] and [`pipeline`].
+//!
+//! [`render`] draws a scene in one call; [`io::read_scene_file`] reads one from a file of any format:
+//!
+//! ```no_run
+//! use senca::io::images::{PictureFormat, PictureOptions, encode};
+//! use senca::{Settings, io, render};
+//!
+//! let scene = io::read_scene_file("teapot.toml".as_ref())?;
+//! let (image, _) = render(&scene, &Settings::default())?;
+//! let png = encode(&image, PictureFormat::Png, &PictureOptions::default())?;
+//! io::write_file("teapot.png".as_ref(), &png)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod line_drawing;
+mod prepare;
+mod render;
+mod settings;
+
+pub use error::Error;
+pub use line_drawing::render_svg;
+pub use prepare::{Prepared, prepare};
+pub use render::{Report, render, render_with};
+pub use settings::{LookAt, Moment, Settings, Viewpoint};
+
+pub use senca_io as io;
+pub use senca_math as math;
+pub use senca_math::Image;
+pub use senca_pipeline as pipeline;
+pub use senca_raster as raster;
+pub use senca_scene as scene;
+pub use senca_scene::Scene;
+pub use senca_shading as shading;

@@ -150,7 +150,13 @@ impl<'a> Document<'a> {
     }
 
     /// `index` when it is below `count`; otherwise a warning.
-    pub(super) fn index_or_warn(&self, place: &str, index: Whole, kind: &str, count: usize) -> Option<u32> {
+    pub(super) fn index_or_warn(
+        &self,
+        place: impl Display,
+        index: Whole,
+        kind: &str,
+        count: usize,
+    ) -> Option<u32> {
         if index.0 < count as u64 {
             return Some(index.0 as u32);
         }

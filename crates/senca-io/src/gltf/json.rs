@@ -1,5 +1,7 @@
 //! The JSON part of a glTF file as it is written (glTF 2.0, section 5), not yet checked.
 //!
+//! What most entries lack is boxed, so that a list of a million `{}` stays small.
+//!
 //! Numbers that name or count things are [`Whole`], which also takes `3.0`, as JSON knows one kind
 //! of number only. What has a default in the format has it here.
 
@@ -109,8 +111,8 @@ json_objects! {
     Camera {
         name: String,
         r#type: String,
-        perspective: Option<Perspective>,
-        orthographic: Option<Orthographic>,
+        perspective: Option<Box<Perspective>>,
+        orthographic: Option<Box<Orthographic>>,
     }
     Perspective { yfov: f64, aspect_ratio: Option<f64>, znear: f64, zfar: Option<f64>, }
     Orthographic { xmag: f64, ymag: f64, znear: f64, zfar: f64, }
@@ -131,7 +133,7 @@ json_objects! {
     }
     TextureInfoExtensions {
         #[serde(rename = "KHR_texture_transform")]
-        transform: Option<TextureTransform>,
+        transform: Option<Box<TextureTransform>>,
     }
     TextureTransform {
         offset: Option<[f64; 2]>,
@@ -141,22 +143,22 @@ json_objects! {
     }
     Material {
         name: String,
-        pbr_metallic_roughness: Option<MetallicRoughness>,
-        normal_texture: Option<TextureInfo>,
-        occlusion_texture: Option<TextureInfo>,
-        emissive_texture: Option<TextureInfo>,
-        emissive_factor: Option<[f64; 3]>,
+        pbr_metallic_roughness: Option<Box<MetallicRoughness>>,
+        normal_texture: Option<Box<TextureInfo>>,
+        occlusion_texture: Option<Box<TextureInfo>>,
+        emissive_texture: Option<Box<TextureInfo>>,
+        emissive_factor: Option<Box<[f64; 3]>>,
         alpha_mode: Option<String>,
         alpha_cutoff: Option<f64>,
         double_sided: bool,
-        extensions: MaterialExtensions,
+        extensions: Option<Box<MaterialExtensions>>,
     }
     MetallicRoughness {
         base_color_factor: Option<[f64; 4]>,
-        base_color_texture: Option<TextureInfo>,
+        base_color_texture: Option<Box<TextureInfo>>,
         metallic_factor: Option<f64>,
         roughness_factor: Option<f64>,
-        metallic_roughness_texture: Option<TextureInfo>,
+        metallic_roughness_texture: Option<Box<TextureInfo>>,
     }
     MaterialExtensions {
         #[serde(rename = "KHR_materials_unlit")]
@@ -173,19 +175,19 @@ json_objects! {
     Nothing {}
     EmissiveStrength { emissive_strength: Option<f64>, }
     Ior { ior: Option<f64>, }
-    Transmission { transmission_factor: f64, transmission_texture: Option<TextureInfo>, }
+    Transmission { transmission_factor: f64, transmission_texture: Option<Box<TextureInfo>>, }
     SpecularGlossiness {
         diffuse_factor: Option<[f64; 4]>,
-        diffuse_texture: Option<TextureInfo>,
+        diffuse_texture: Option<Box<TextureInfo>>,
         specular_factor: Option<[f64; 3]>,
         glossiness_factor: Option<f64>,
-        specular_glossiness_texture: Option<TextureInfo>,
+        specular_glossiness_texture: Option<Box<TextureInfo>>,
     }
     Mesh {
         name: String,
         primitives: Vec<Primitive>,
         weights: Vec<f64>,
-        extras: Option<serde_json::Value>,
+        extras: Option<Box<serde_json::Value>>,
     }
     Primitive {
         attributes: BTreeMap<String, Whole>,
@@ -198,14 +200,14 @@ json_objects! {
         name: String,
         children: Vec<Whole>,
         matrix: Option<Box<[f64; 16]>>,
-        translation: Option<[f64; 3]>,
-        rotation: Option<[f64; 4]>,
-        scale: Option<[f64; 3]>,
+        translation: Option<Box<[f64; 3]>>,
+        rotation: Option<Box<[f64; 4]>>,
+        scale: Option<Box<[f64; 3]>>,
         mesh: Option<Whole>,
         camera: Option<Whole>,
         skin: Option<Whole>,
         weights: Option<Vec<f64>>,
-        extensions: NodeExtensions,
+        extensions: Option<Box<NodeExtensions>>,
     }
     NodeExtensions {
         #[serde(rename = "KHR_lights_punctual")]

@@ -26,27 +26,27 @@ pub(super) struct Reader<'t, 'd> {
 
 impl Reader<'_, '_> {
     fn read(&mut self, json: &json::Material) -> Material {
-        let extensions = &json.extensions;
+        let none = json::MaterialExtensions::default();
+        let extensions = json.extensions.as_deref().unwrap_or(&none);
         let reflection = match (&extensions.specular_glossiness, &json.pbr_metallic_roughness) {
             (Some(json), _) => specular_glossiness::read(self, json),
             (None, Some(json)) => self.metallic_roughness(json),
             (None, None) => MetallicRoughness::default(),
         };
         let strength = extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength).unwrap_or(1.0);
-        let emission = self.color("emissiveFactor", json.emissive_factor, 0.0);
-        let [strength] = self.document.floats(&self.place, [strength.max(0.0)], [1.0]);
+        let factor = json.emissive_factor.as_deref().map(|c| c.map(|v| v * strength.max(0.0)));
         let mut material = Material {
             name: json.name.clone(),
-            emission: emission * strength,
+            emission: self.color("emissiveFactor", factor, 0.0),
             emission_texture: self.texture(
                 "emissiveTexture",
-                json.emissive_texture.as_ref(),
+                json.emissive_texture.as_deref(),
                 ColorSpace::Srgb,
             ),
-            normal_texture: self.texture("normalTexture", json.normal_texture.as_ref(), ColorSpace::Linear),
+            normal_texture: self.texture("normalTexture", json.normal_texture.as_deref(), ColorSpace::Linear),
             occlusion_texture: self.texture(
                 "occlusionTexture",
-                json.occlusion_texture.as_ref(),
+                json.occlusion_texture.as_deref(),
                 ColorSpace::Linear,
             ),
             alpha_mode: self.alpha_mode(json),
@@ -74,12 +74,12 @@ impl Reader<'_, '_> {
             roughness: self.factor("roughnessFactor", json.roughness_factor, 1.0),
             base_color_texture: self.texture(
                 &format!("{place}.baseColorTexture"),
-                json.base_color_texture.as_ref(),
+                json.base_color_texture.as_deref(),
                 ColorSpace::Srgb,
             ),
             metallic_roughness_texture: self.texture(
                 &format!("{place}.metallicRoughnessTexture"),
-                json.metallic_roughness_texture.as_ref(),
+                json.metallic_roughness_texture.as_deref(),
                 ColorSpace::Linear,
             ),
         }
@@ -158,7 +158,8 @@ impl Reader<'_, '_> {
         let info = info?;
         let place = format!("{}.{name}", self.place);
         let count = self.document.root.textures.len();
-        let index = self.document.index_or_warn(&format!("{place}.index"), info.index, "texture", count)?;
+        let index =
+            self.document.index_or_warn(format_args!("{place}.index"), info.index, "texture", count)?;
         let transform = info.extensions.transform.as_ref();
         let texcoord = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord).0;
         if texcoord > 1 {

@@ -28,6 +28,8 @@ pub(super) struct ReadMesh {
     pub(super) largest_joint: Option<u16>,
     /// Morph weights for nodes that give none.
     pub(super) weights: Vec<f32>,
+    /// Number of morph targets.
+    pub(super) targets: usize,
 }
 
 /// Vertices of primitives with the same attributes.
@@ -72,9 +74,10 @@ pub(super) fn read(
     }
     let material = add_elements(document, index, json, &groups, materials.len(), &mut mesh);
     let largest_joint = mesh.joints.iter().flat_map(|j| j.joints).max();
-    let weights = json.weights.iter().map(|&w| finite_or_zero(w as f32)).collect();
+    let targets = mesh.morph_targets.len();
+    let weights = json.weights.iter().take(targets).map(|&w| finite_or_zero(w as f32)).collect();
     let geometry = Geometry { name: json.name.clone(), shape: Shape::Mesh(mesh), material };
-    Ok(ReadMesh { geometry, largest_joint, weights })
+    Ok(ReadMesh { geometry, largest_joint, weights, targets })
 }
 
 /// Names of morph targets, which exporters put into the mesh's extras.
@@ -302,52 +305,58 @@ impl<'a> Source<'a> {
 
     /// The four strongest influences of all sets.
     fn joints(&self) -> Result<Option<Vec<JointInfluence>>, ReadError> {
-        let mut pulls: Vec<Vec<(u32, f32)>> = Vec::new();
-        for set in 0.. {
-            let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
-            let (Some(joints), Some(weights)) = (self.open(&joints, &[4])?, self.open(&weights, &[4])?)
-            else {
-                break;
-            };
-            if set == 1 {
-                self.document
-                    .warn(format!("{}: more than 4 joints pull; the 4 strongest are kept", self.place));
-            }
-            let select = self.select.map_or_else(|| (0..self.count as u32).collect(), <[u32]>::to_vec);
-            let joints = joints.integers::<4>(self.document, Some(&select))?;
-            let weights = weights.floats::<4>(self.document, Some(&select))?;
-            pulls.resize(joints.len(), Vec::new());
-            for ((pull, joint), weight) in pulls.iter_mut().zip(joints).zip(weights) {
-                pull.extend(joint.into_iter().zip(weight.map(|w| finite_or_zero(w).max(0.0))));
-            }
-            if set == 0 && !self.attributes.contains_key("JOINTS_1") {
-                break;
+        let Some(mut influences) = self.joint_set(0)? else { return Ok(None) };
+        for set in 1.. {
+            let Some(more) = self.joint_set(set)? else { break };
+            self.document.warn(format!("{}: more than 4 joints pull; the 4 strongest are kept", self.place));
+            for (influence, more) in influences.iter_mut().zip(more) {
+                *influence = strongest(*influence, more);
             }
         }
-        if pulls.is_empty() {
+        influences.iter_mut().for_each(settle_influence);
+        Ok(Some(influences))
+    }
+
+    /// Influences of `JOINTS_n` and `WEIGHTS_n` as they are.
+    fn joint_set(&self, set: u32) -> Result<Option<Vec<JointInfluence>>, ReadError> {
+        let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
+        let (Some(joints), Some(weights)) = (self.open(&joints, &[4])?, self.open(&weights, &[4])?) else {
             return Ok(None);
-        }
-        Ok(Some(pulls.into_iter().map(strongest).collect()))
+        };
+        let all: Vec<u32> = if self.select.is_none() { (0..self.count as u32).collect() } else { Vec::new() };
+        let select = self.select.unwrap_or(&all);
+        let joints = joints.integers::<4>(self.document, Some(select))?;
+        let weights = weights.floats::<4>(self.document, Some(select))?;
+        let influence = |(joints, weights): ([u32; 4], [f32; 4])| JointInfluence {
+            joints: joints.map(|j| u16::try_from(j).unwrap_or(u16::MAX)),
+            weights: weights.map(|w| finite_or_zero(w).max(0.0)),
+        };
+        Ok(Some(joints.into_iter().zip(weights).map(influence).collect()))
     }
 }
 
-/// The four strongest of `pulls`, with weights that sum to 1 (all 0 when nothing pulls).
-fn strongest(mut pulls: Vec<(u32, f32)>) -> JointInfluence {
-    if pulls.len() > 4 {
-        pulls.sort_by(|a, b| b.1.total_cmp(&a.1));
+/// The four strongest of both.
+fn strongest(a: JointInfluence, b: JointInfluence) -> JointInfluence {
+    let mut pulls: [(u16, f32); 8] = std::array::from_fn(|i| {
+        let from = if i < 4 { a } else { b };
+        (from.joints[i % 4], from.weights[i % 4])
+    });
+    pulls.sort_by(|a, b| b.1.total_cmp(&a.1));
+    JointInfluence {
+        joints: std::array::from_fn(|i| pulls[i].0),
+        weights: std::array::from_fn(|i| pulls[i].1),
     }
-    let mut influence = JointInfluence::default();
-    for (slot, &(joint, weight)) in pulls.iter().take(4).enumerate() {
-        if weight > 0.0 {
-            influence.joints[slot] = u16::try_from(joint).unwrap_or(u16::MAX);
-            influence.weights[slot] = weight;
-        }
+}
+
+/// Makes the weights sum to 1 (all stay 0 when nothing pulls) and lets joints that do not pull be 0.
+fn settle_influence(influence: &mut JointInfluence) {
+    for (joint, _) in influence.joints.iter_mut().zip(influence.weights).filter(|(_, w)| *w == 0.0) {
+        *joint = 0;
     }
     let sum: f32 = influence.weights.iter().sum();
-    if sum > 0.0 && (sum - 1.0).abs() > 1e-5 {
+    if sum > 0.0 && sum.is_finite() && (sum - 1.0).abs() > 1e-5 {
         influence.weights = influence.weights.map(|w| w / sum);
     }
-    influence
 }
 
 fn read_target(source: &Source<'_>) -> Result<Target, ReadError> {
@@ -359,13 +368,14 @@ fn read_target(source: &Source<'_>) -> Result<Target, ReadError> {
     Ok(Target { points: offsets("POSITION")?, normals: offsets("NORMAL")?, tangents: offsets("TANGENT")? })
 }
 
-fn finite_or_zero(v: f32) -> f32 {
+/// `v`, or 0 for what is not a number of reach.
+pub(super) fn finite_or_zero(v: f32) -> f32 {
     if v.is_finite() { v } else { 0.0 }
 }
 
 /// `v` at length 1; as it is when it is close to that, so that what was unit stays the same bits.
 fn unit(v: Vec3) -> Option<Vec3> {
-    if v.is_finite() && (v.length_squared() - 1.0).abs() < 1e-4 { Some(v) } else { v.try_normalize() }
+    if (v.length_squared() - 1.0).abs() < 1e-4 { Some(v) } else { crate::normals::unit(v) }
 }
 
 /// Unit normals; those without direction are taken from the faces around the vertex.
@@ -379,7 +389,9 @@ fn sound_normals(normals: Vec<Vec3>, points: &[Vec3], primitives: &[(usize, Elem
         let area_normal = area_normal(points, triangle);
         triangle.iter().for_each(|&v| around[v as usize] += area_normal);
     }
-    let mended = |(normal, around): (Option<Vec3>, Vec3)| normal.unwrap_or(around.normalize_or(Vec3::Z));
+    let mended = |(normal, around): (Option<Vec3>, Vec3)| {
+        normal.unwrap_or(crate::normals::unit(around).unwrap_or(Vec3::Z))
+    };
     normals.into_iter().zip(around).map(mended).collect()
 }
 
@@ -410,7 +422,11 @@ impl Group {
         let mut normals = Vec::new();
         for (_, elements) in &mut self.primitives {
             let faces = elements.triangles.iter();
-            normals.extend(faces.flat_map(|&t| [area_normal(&self.points, t).normalize_or(Vec3::Z); 3]));
+            normals.extend(
+                faces.flat_map(|&t| {
+                    [crate::normals::unit(area_normal(&self.points, t)).unwrap_or(Vec3::Z); 3]
+                }),
+            );
             for vertex in elements.vertices_mut() {
                 source.push(*vertex);
                 *vertex = source.len() as u32 - 1;

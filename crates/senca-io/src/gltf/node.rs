@@ -12,8 +12,11 @@ use senca_scene::{
 use super::accessor::Accessor;
 use super::document::Document;
 use super::json;
-use super::mesh::ReadMesh;
+use super::mesh::{ReadMesh, finite_or_zero};
 use crate::ReadError;
+
+/// Translations and scales from here on leave single precision.
+const LARGEST: f64 = 1e30;
 
 /// Reads everything that nodes name except meshes, and the nodes themselves.
 pub(super) fn read_all(
@@ -28,32 +31,37 @@ pub(super) fn read_all(
     for (i, json) in root.skins.iter().enumerate() {
         scene.skins.push(skin(document, i, json)?);
     }
-    scene.nodes = root.nodes.iter().enumerate().map(|(i, n)| node(document, i, n, meshes, scene)).collect();
-    let parents = settle_tree(document, scene);
-    scene.roots = roots(document, scene, parents);
     for (i, json) in root.nodes.iter().enumerate() {
-        if let Some(instancing) = &json.extensions.instancing {
+        let node = node(document, i, json, meshes, scene)?;
+        scene.nodes.push(node);
+    }
+    let parents = settle_tree(document, scene);
+    scene.roots = roots(document, scene, &parents);
+    for (i, json) in root.nodes.iter().enumerate() {
+        if let Some(instancing) = json.extensions.as_ref().and_then(|e| e.instancing.as_ref()) {
             add_instances(document, i, instancing, scene)?;
         }
     }
     Ok(())
 }
 
-fn node(document: &Document<'_>, i: usize, json: &json::Node, meshes: &[ReadMesh], scene: &Scene) -> Node {
-    let place = |field: &str| format!("nodes[{i}].{field}");
+fn node(
+    document: &Document<'_>,
+    i: usize,
+    json: &json::Node,
+    meshes: &[ReadMesh],
+    scene: &Scene,
+) -> Result<Node, ReadError> {
     let named = |field: &str, index: Option<json::Whole>, kind: &str, count: usize| {
-        index.and_then(|index| document.index_or_warn(&place(field), index, kind, count))
+        index.and_then(|index| document.index_or_warn(format_args!("nodes[{i}].{field}"), index, kind, count))
     };
     let nodes = document.root.nodes.len();
     let children = json.children.iter();
-    let children = children.filter_map(|&c| document.index_or_warn(&place("children"), c, "node", nodes));
+    let children = children.filter_map(|&child| named("children", Some(child), "node", nodes));
     let geometry = named("mesh", json.mesh, "mesh", meshes.len());
     let mesh = geometry.and_then(|g| meshes.get(g as usize));
-    let light = json.extensions.light.as_ref().map(|l| l.light);
-    let weights = json.weights.as_ref().map(|w| w.iter().map(|&w| w as f32).collect::<Vec<_>>());
-    let mut morph_weights = weights.or_else(|| mesh.map(|m| m.weights.clone())).unwrap_or_default();
-    morph_weights.iter_mut().filter(|w| !w.is_finite()).for_each(|w| *w = 0.0);
-    Node {
+    let light = json.extensions.as_ref().and_then(|e| e.light.as_ref()).map(|l| l.light);
+    Ok(Node {
         name: json.name.clone(),
         transform: transform(document, i, json),
         children: children.map(NodeId).collect(),
@@ -62,8 +70,21 @@ fn node(document: &Document<'_>, i: usize, json: &json::Node, meshes: &[ReadMesh
         light: named("extensions.KHR_lights_punctual.light", light, "light", scene.lights.len()).map(LightId),
         camera: named("camera", json.camera, "camera", scene.cameras.len()).map(CameraId),
         skin: fitting_skin(document, i, json, mesh, scene),
-        morph_weights,
-    }
+        morph_weights: morph_weights(document, i, json, mesh)?,
+    })
+}
+
+/// The node's own weights, or its mesh's; every node that shows a mesh gets its own copy.
+fn morph_weights(
+    document: &Document<'_>,
+    i: usize,
+    json: &json::Node,
+    mesh: Option<&ReadMesh>,
+) -> Result<Vec<f32>, ReadError> {
+    let Some(mesh) = mesh else { return Ok(Vec::new()) };
+    document.charge(&format_args!("nodes[{i}].weights"), mesh.weights.len() as u64)?;
+    let Some(own) = &json.weights else { return Ok(mesh.weights.clone()) };
+    Ok(own.iter().take(mesh.targets).map(|&w| finite_or_zero(w as f32)).collect())
 }
 
 /// The node's skin when it has all the joints that the mesh names.
@@ -74,8 +95,8 @@ fn fitting_skin(
     mesh: Option<&ReadMesh>,
     scene: &Scene,
 ) -> Option<SkinId> {
-    let place = format!("nodes[{i}].skin");
-    let skin = document.index_or_warn(&place, json.skin?, "skin", scene.skins.len())?;
+    let place = format_args!("nodes[{i}].skin");
+    let skin = document.index_or_warn(place, json.skin?, "skin", scene.skins.len())?;
     let joints = scene.skins[skin as usize].joints.len();
     let largest = mesh?.largest_joint.map_or(0, usize::from);
     if largest < joints {
@@ -89,20 +110,28 @@ fn transform(document: &Document<'_>, i: usize, json: &json::Node) -> Transform 
     if let Some(matrix) = &json.matrix {
         let matrix = DMat4::from_cols_array(matrix);
         let affine = matrix.row(3).abs_diff_eq(DMat4::IDENTITY.row(3), 1e-6);
-        if affine && matrix.is_finite() {
+        if affine && matrix.to_cols_array().iter().all(|v| v.abs() < LARGEST) {
             return Transform::Matrix(matrix);
         }
-        document.warn(format!("nodes[{i}].matrix: is not affine; left out"));
+        document.warn(format!("nodes[{i}].matrix: is not affine or too large; left out"));
         return Transform::default();
     }
-    let rotation = DQuat::from_array(json.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    let rotation = json.rotation.as_deref().map_or(DQuat::IDENTITY, |r| DQuat::from_array(*r));
+    let vector = |values: Option<&[f64; 3]>, default| match values.map(|v| DVec3::from_array(*v)) {
+        Some(v) if v.abs().max_element() < LARGEST => v,
+        Some(_) => {
+            document.warn(format!("nodes[{i}]: a translation or scale is too large; left out"));
+            default
+        }
+        None => default,
+    };
     Transform::Parts {
-        translation: DVec3::from_array(json.translation.unwrap_or([0.0; 3])),
+        translation: vector(json.translation.as_deref(), DVec3::ZERO),
         rotation: unit_rotation(rotation).unwrap_or_else(|| {
             document.warn(format!("nodes[{i}].rotation: has no direction; left out"));
             DQuat::IDENTITY
         }),
-        scale: DVec3::from_array(json.scale.unwrap_or([1.0; 3])),
+        scale: vector(json.scale.as_deref(), DVec3::ONE),
     }
 }
 
@@ -153,7 +182,7 @@ fn settle_tree(document: &Document<'_>, scene: &mut Scene) -> Vec<Option<u32>> {
 }
 
 /// Nodes that the default scene shows: of `scene`, else of the first scene, else all without parent.
-fn roots(document: &Document<'_>, scene: &mut Scene, mut parents: Vec<Option<u32>>) -> Vec<NodeId> {
+fn roots(document: &Document<'_>, scene: &mut Scene, parents: &[Option<u32>]) -> Vec<NodeId> {
     let scenes = &document.root.scenes;
     let named = document.root.scene.and_then(|s| document.index_or_warn("scene", s, "scene", scenes.len()));
     let chosen = named.unwrap_or(0) as usize;
@@ -162,30 +191,41 @@ fn roots(document: &Document<'_>, scene: &mut Scene, mut parents: Vec<Option<u32
     };
     scene.name.clone_from(&json.name);
     let place = format!("scenes[{chosen}].nodes");
-    let nodes = json.nodes.iter();
-    let listed: Vec<u32> =
-        nodes.filter_map(|&n| document.index_or_warn(&place, n, "node", scene.nodes.len())).collect();
-    let unique: BTreeSet<u32> = listed.iter().copied().collect();
+    let mut listed = vec![false; parents.len()];
+    let nodes = json.nodes.iter().filter_map(|&n| document.index_or_warn(&place, n, "node", parents.len()));
+    let unique: Vec<u32> = nodes.filter(|&n| !std::mem::replace(&mut listed[n as usize], true)).collect();
+    let shown = shown_by_ancestors(scene, parents, &listed);
+    let mut cut = BTreeSet::new();
     let mut roots = Vec::new();
-    let mut taken = BTreeSet::new();
-    for node in listed.into_iter().filter(|&n| taken.insert(n)) {
-        let Some(parent) = parents[node as usize] else {
-            roots.push(NodeId(node));
-            continue;
-        };
-        // Shown through an ancestor, or cut from a parent that the scene does not show.
-        let shown =
-            std::iter::successors(Some(parent), |&p| parents[p as usize]).any(|p| unique.contains(&p));
-        if shown {
+    for node in unique {
+        if shown[node as usize] {
             document.warn(format!("{place}: node {node} is a child of another node of the scene"));
             continue;
         }
-        document.warn(format!("{place}: node {node} has a parent that is not in the scene"));
-        scene.nodes[parent as usize].children.retain(|c| c.0 != node);
-        parents[node as usize] = None;
         roots.push(NodeId(node));
+        if let Some(parent) = parents[node as usize] {
+            document.warn(format!("{place}: node {node} has a parent that is not in the scene"));
+            cut.insert((parent, node));
+        }
+    }
+    for &parent in cut.iter().map(|(parent, _)| parent).collect::<BTreeSet<_>>() {
+        scene.nodes[parent as usize].children.retain(|c| !cut.contains(&(parent, c.0)));
     }
     roots
+}
+
+/// For each node whether one of its ancestors is listed.
+fn shown_by_ancestors(scene: &Scene, parents: &[Option<u32>], listed: &[bool]) -> Vec<bool> {
+    let mut shown = vec![false; parents.len()];
+    let mut open: Vec<u32> = (0..parents.len() as u32).filter(|&n| parents[n as usize].is_none()).collect();
+    while let Some(node) = open.pop() {
+        let below = shown[node as usize] || listed[node as usize];
+        for child in &scene.nodes[node as usize].children {
+            shown[child.index()] = below;
+            open.push(child.0);
+        }
+    }
+    shown
 }
 
 /// A child for each instance (EXT_mesh_gpu_instancing); the node itself shows nothing then.
@@ -206,7 +246,7 @@ fn add_instances(
         scales.as_ref().map(Vec::len),
     ];
     let count = counts.into_iter().flatten().min().unwrap_or(0);
-    document.charge(&place, count as u64)?;
+    document.charge(&place, count as u64 * (1 + scene.nodes[i].morph_weights.len() as u64))?;
     for n in 0..count {
         let rotation = rotations.as_ref().map_or(DQuat::IDENTITY, |r| DQuat::from_array(r[n].map(f64::from)));
         let transform = Transform::Parts {

@@ -35,9 +35,9 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, json: &json::SpecularGlossiness)
         specular: reader.color("specularFactor", json.specular_factor, 1.0).map(|v| v.min(1.0)),
         glossiness: reader.factor("glossinessFactor", json.glossiness_factor, 1.0),
     };
-    let diffuse_texture = reader.texture("diffuseTexture", json.diffuse_texture.as_ref(), ColorSpace::Srgb);
+    let diffuse_texture = reader.texture("diffuseTexture", json.diffuse_texture.as_deref(), ColorSpace::Srgb);
     let name = "specularGlossinessTexture";
-    let coat_texture = reader.texture(name, json.specular_glossiness_texture.as_ref(), ColorSpace::Srgb);
+    let coat_texture = reader.texture(name, json.specular_glossiness_texture.as_deref(), ColorSpace::Srgb);
     if let Some(coat_texture) = coat_texture {
         if let Some(textures) = convert_textures(reader, coat, diffuse_texture, coat_texture) {
             let [base, metallic_roughness] = textures;

@@ -67,9 +67,9 @@ impl<'d> Textures<'d> {
         let image = document.index_or_warn(&at, source, "image", document.root.images.len())?;
         let image = ImageId(self.image(document, image as usize, space)?);
         let samplers = &document.root.samplers;
-        let sampler = json
-            .sampler
-            .and_then(|s| document.index_or_warn(&format!("{place}.sampler"), s, "sampler", samplers.len()));
+        let sampler = json.sampler.and_then(|s| {
+            document.index_or_warn(format_args!("{place}.sampler"), s, "sampler", samplers.len())
+        });
         let default = json::Sampler::default();
         let sampler = sampler.and_then(|s| samplers.get(s as usize)).unwrap_or(&default);
         Some(self.add(Texture {

@@ -30,7 +30,8 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
     for mut part in split(soup) {
         let material_of =
             |key: &SurfaceKey| key.material.as_ref().and_then(|name| materials.get(name).copied());
-        part.mesh.surfaces = part.keys.iter().map(|key| surface(key, material_of(key))).collect();
+        let named = part.keys.iter().zip(part.surface_names);
+        part.mesh.surfaces = named.map(|(key, name)| surface(name, key, material_of(key))).collect();
         let name = if part.name.is_empty() { scene.name.clone() } else { part.name };
         let shape = Shape::Mesh(part.mesh);
         let geometry = scene.add_geometry(Geometry { name: name.clone(), shape, material: None });
@@ -40,8 +41,8 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
     Ok(scene)
 }
 
-fn surface(key: &SurfaceKey, material: Option<MaterialId>) -> Surface {
-    Surface { name: key.group.clone(), material, smooth: key.smoothing != Smoothing::Off }
+fn surface(name: String, key: &SurfaceKey, material: Option<MaterialId>) -> Surface {
+    Surface { name, material, smooth: key.smoothing != Smoothing::Off }
 }
 
 /// Decodes colours; ones above 1 anywhere mean that they run to 255.
@@ -82,6 +83,7 @@ struct Part {
     name: String,
     mesh: Mesh,
     keys: Vec<SurfaceKey>,
+    surface_names: Vec<String>,
 }
 
 /// The objects that have faces, lines or dots.
@@ -94,7 +96,8 @@ fn split(mut soup: Soup) -> Vec<Part> {
     if let [object] = objects[..] {
         let keys = std::mem::take(&mut soup.surfaces);
         let name = std::mem::take(&mut soup.objects[object as usize]);
-        return vec![Part { name, mesh: whole_mesh(soup, &keys), keys }];
+        let surface_names = std::mem::take(&mut soup.surface_names);
+        return vec![Part { name, mesh: whole_mesh(soup, &keys), keys, surface_names }];
     }
     split_objects(&soup, &objects)
 }
@@ -125,8 +128,8 @@ fn whole_mesh(mut soup: Soup, keys: &[SurfaceKey]) -> Mesh {
         let range = corner_of(&soup.starts, run.first_face)..corner_of(&soup.starts, last_face);
         corners.extend(range.map(|c| unifier.vertex(soup.corner(c), class)));
     }
-    mesh.lines = soup.lines.iter().map(|(line, _)| line.map(|corner| unifier.vertex(corner, 0))).collect();
-    mesh.dots = soup.dots.iter().map(|(dot, _)| unifier.vertex(*dot, 0)).collect();
+    mesh.lines = soup.lines.iter().map(|(line, _)| line.map(|corner| unifier.loose(corner))).collect();
+    mesh.dots = soup.dots.iter().map(|(dot, _)| unifier.loose(*dot)).collect();
     mesh.faces = Faces { corners, starts: soup.starts, surface };
     mesh.vertices = unifier.into_vertices(&source, &|point| point);
     fill_missing_normals(&mut mesh);
@@ -147,8 +150,10 @@ fn split_objects(soup: &Soup, objects: &[u32]) -> Vec<Part> {
     let mut local_of_point = vec![NONE; soup.points.len()];
     let mut parts = Vec::with_capacity(objects.len());
     for (&object, content) in objects.iter().zip(&contents) {
-        let (mesh, keys) = part_mesh(soup, content, &mut local_of_point);
-        parts.push(Part { name: soup.objects[object as usize].clone(), mesh, keys });
+        let (mesh, surfaces) = part_mesh(soup, content, &mut local_of_point);
+        let keys = surfaces.iter().map(|&s| soup.surfaces[s as usize].clone()).collect();
+        let surface_names = surfaces.iter().map(|&s| soup.surface_names[s as usize].clone()).collect();
+        parts.push(Part { name: soup.objects[object as usize].clone(), mesh, keys, surface_names });
     }
     parts
 }
@@ -161,8 +166,8 @@ struct Content {
     dots: Vec<Corner>,
 }
 
-/// The mesh of one object. `local_of_point` is [`NONE`] throughout before and after.
-fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mesh, Vec<SurfaceKey>) {
+/// The mesh of one object, and the file's number of each of its surfaces. `local_of_point` is [`NONE`] throughout before and after.
+fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mesh, Vec<u32>) {
     // Number the points that are used, in their order in the file.
     let corners_of =
         |&(run, last): &(Run, u32)| corner_of(&soup.starts, run.first_face)..corner_of(&soup.starts, last);
@@ -177,33 +182,30 @@ fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mes
         Mesh { points: used.iter().map(|&p| soup.points[p as usize]).collect(), ..Mesh::default() };
     // Make faces, lines and dots over the vertices that they need.
     let mut unifier = Unifier::new(used.len());
-    let mut localize = |mut corner: Corner, class| {
-        corner.point = local_of_point[corner.point as usize];
-        unifier.vertex(corner, class)
-    };
-    let mut keys = Vec::new();
-    let mut key_numbers = HashMap::new();
+    let local = |corner: Corner| Corner { point: local_of_point[corner.point as usize], ..corner };
+    let mut surfaces = Vec::new();
+    let mut surface_numbers = HashMap::new();
     let mut face = Vec::new();
     for &(run, last_face) in &content.runs {
         let key = &soup.surfaces[run.surface as usize];
-        let surface = *key_numbers.entry(run.surface).or_insert_with(|| {
-            keys.push(key.clone());
-            keys.len() as u32 - 1
+        let surface = *surface_numbers.entry(run.surface).or_insert_with(|| {
+            surfaces.push(run.surface);
+            surfaces.len() as u32 - 1
         });
         for f in run.first_face..last_face {
             face.clear();
             let range = corner_of(&soup.starts, f)..corner_of(&soup.starts, f + 1);
-            face.extend(range.map(|c| localize(soup.corner(c), class_of(key.smoothing))));
+            face.extend(range.map(|c| unifier.vertex(local(soup.corner(c)), class_of(key.smoothing))));
             mesh.faces.push(&face, surface);
         }
     }
-    mesh.lines = content.lines.iter().map(|line| line.map(|corner| localize(corner, 0))).collect();
-    mesh.dots = content.dots.iter().map(|&dot| localize(dot, 0)).collect();
+    mesh.lines = content.lines.iter().map(|line| line.map(|corner| unifier.loose(local(corner)))).collect();
+    mesh.dots = content.dots.iter().map(|&dot| unifier.loose(local(dot))).collect();
     let source = Attributes { texcoords: &soup.texcoords, normals: &soup.normals, colors: &soup.colors };
     mesh.vertices = unifier.into_vertices(&source, &|local| used[local as usize]);
     fill_missing_normals(&mut mesh);
     used.iter().for_each(|&point| local_of_point[point as usize] = NONE);
-    (mesh, keys)
+    (mesh, surfaces)
 }
 
 impl Soup {
@@ -297,6 +299,19 @@ impl Unifier {
         let made = self.make(corner, class);
         self.hashed.insert(key, made);
         made
+    }
+
+    /// A vertex for the corner of a line or dot: any of the point's that has what the corner names.
+    fn loose(&mut self, corner: Corner) -> u32 {
+        let mut vertex = self.first[corner.point as usize];
+        for _ in 0..CHAIN {
+            let Some(known) = self.corners.get(vertex as usize) else { break };
+            if corner.texcoord == NONE || corner.texcoord == known.texcoord {
+                return vertex;
+            }
+            vertex = self.next[vertex as usize];
+        }
+        self.vertex(corner, 0)
     }
 
     fn make(&mut self, corner: Corner, class: u64) -> u32 {

@@ -29,7 +29,6 @@ pub(super) enum Smoothing {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct SurfaceKey {
     pub(super) object: u32,
-    pub(super) group: String,
     pub(super) material: Option<String>,
     pub(super) smoothing: Smoothing,
 }
@@ -131,6 +130,8 @@ pub(super) struct Soup {
     pub(super) dots: Vec<(Corner, u32)>,
     pub(super) objects: Vec<String>,
     pub(super) surfaces: Vec<SurfaceKey>,
+    /// Name of the only group on each surface; empty where there are several.
+    pub(super) surface_names: Vec<String>,
     pub(super) libraries: Vec<String>,
     pub(super) warnings: Vec<String>,
 }
@@ -139,6 +140,7 @@ struct Parser<'a> {
     cursor: Cursor<'a>,
     soup: Soup,
     now: SurfaceKey,
+    group: String,
     /// Whether `now` changed since the last face.
     stale: bool,
     surface_numbers: HashMap<SurfaceKey, u32>,
@@ -153,6 +155,7 @@ pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Soup, ReadError> {
         cursor: Cursor::with_continuation(name, bytes),
         soup: Soup { objects: vec![String::new()], ..Soup::default() },
         now: SurfaceKey::default(),
+        group: String::new(),
         stale: true,
         surface_numbers: HashMap::new(),
         object_numbers: HashMap::new(),
@@ -201,7 +204,7 @@ impl Parser<'_> {
             b"p" => self.dots()?,
             b"o" => self.object(),
             b"g" => {
-                self.now.group = self.cursor.rest_of_line();
+                self.group = self.cursor.rest_of_line();
                 self.stale = true;
             }
             b"s" => self.smoothing()?,
@@ -399,6 +402,9 @@ impl Parser<'_> {
         let surface = *self.surface_numbers.entry(self.now.clone()).or_insert(next);
         if surface == next {
             self.soup.surfaces.push(self.now.clone());
+            self.soup.surface_names.push(self.group.clone());
+        } else if self.soup.surface_names[surface as usize] != self.group {
+            self.soup.surface_names[surface as usize].clear();
         }
         if self.soup.runs.last().is_none_or(|run| run.surface != surface) {
             self.soup.runs.push(Run { first_face: self.soup.face_count, surface });

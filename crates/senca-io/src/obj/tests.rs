@@ -91,8 +91,9 @@ fn smoothing_groups_make_creases_and_materials_do_not() {
     assert_eq!(crease.faces.surface, [0, 1]);
     let smooth = mesh(&format!("{SQUARE}s 1\ng a\nf 1 2 3\ng b\nf 1 3 4\ng a\nf 1 2 4\n"));
     assert_eq!(smooth.vertices.point.len(), 4);
-    assert_eq!(smooth.faces.surface, [0, 1, 0]);
-    assert_eq!(smooth.surfaces.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["a", "b"]);
+    assert_eq!((smooth.surfaces.len(), smooth.surfaces[0].name.as_str()), (1, ""));
+    let groups = mesh(&format!("{SQUARE}g a\ns 1\nf 1 2 3\ng b\ns 2\nf 1 3 4\n"));
+    assert_eq!(groups.surfaces.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["a", "b"]);
     let flat = mesh(&format!("{SQUARE}s off\nf 1 2 3\n"));
     assert!(!flat.surfaces[0].smooth);
 }

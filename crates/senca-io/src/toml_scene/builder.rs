@@ -12,7 +12,7 @@ use super::shapes::{self, Kind, ReadShape};
 use super::source::{Result, Source, Table};
 use super::transforms::read_transform;
 use super::values::Value;
-use super::{ModelReader, meshes, read_nested};
+use super::{ModelReader, is_scene_file, meshes, read_nested};
 use crate::{Files, Limits, ReadError};
 
 /// How deep definitions may use each other, and files include each other.
@@ -300,9 +300,8 @@ impl<'a> Builder<'a> {
             return Err(value.source.limit(&value.span(), message));
         }
         let files = IncludedFiles::new(self.files, self.source.name, uri);
-        let bytes = files.read_included().map_err(|error| located(value, error))?;
-        let is_toml = uri.to_ascii_lowercase().ends_with(".toml");
-        if is_toml {
+        let bytes = files.read_included(uri).map_err(|error| located(value, error))?;
+        if uri.to_ascii_lowercase().ends_with(".toml") || is_scene_file(&bytes) {
             read_nested(uri, &bytes, &files, self.models, self.depth + 1).map(|file| file.scene)
         } else {
             (self.models)(uri, &bytes, &files)

@@ -2,6 +2,10 @@ use super::*;
 use crate::NoFiles;
 
 mod errors;
+mod files;
+mod hostile;
+mod meaning;
+mod samples;
 
 /// Models are read by nobody.
 pub(super) fn no_models(name: &str, _: &[u8], _: &dyn Files) -> Result<Scene, ReadError> {
@@ -24,11 +28,4 @@ pub(super) fn error(text: &str) -> String {
         Ok(_) => panic!("read without an error:\n{text}"),
         Err(error) => error.to_string(),
     }
-}
-
-#[test]
-fn a_ball_is_a_ball() {
-    let scene = scene("[[object]]\nshape = \"sphere\"\nradius = 2");
-    assert_eq!(scene.geometries[0].shape, senca_scene::Shape::Sphere { radius: 2.0 });
-    assert_eq!(scene.roots.len(), 1);
 }

@@ -90,8 +90,20 @@ pub struct KnotVector {
 pub(super) struct Basis {
     /// Index of the first of the degree + 1 functions.
     pub(super) first: usize,
-    pub(super) values: Vec<f64>,
-    pub(super) derivatives: Vec<f64>,
+    count: usize,
+    // Room for the highest degree, so that evaluation allocates nothing.
+    values: [f64; KnotVector::MAX_DEGREE + 1],
+    derivatives: [f64; KnotVector::MAX_DEGREE + 1],
+}
+
+impl Basis {
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+
+    pub(super) fn derivatives(&self) -> &[f64] {
+        &self.derivatives[..self.count]
+    }
 }
 
 impl KnotVector {
@@ -185,7 +197,7 @@ impl KnotVector {
     pub fn basis_functions(&self, t: f64) -> Vec<f64> {
         let basis = self.basis(t);
         let mut all = vec![0.0; self.point_count()];
-        all[basis.first..][..=self.degree].copy_from_slice(&basis.values);
+        all[basis.first..][..=self.degree].copy_from_slice(basis.values());
         all
     }
 
@@ -208,28 +220,30 @@ impl KnotVector {
     }
 
     /// Values and derivatives of the functions that are not zero at `t`, by Cox and de Boor's
-    /// recursion: those of one degree less give the derivatives on the way.
+    /// recursion; the functions of one degree less give the derivatives on the way.
     pub(super) fn basis(&self, t: f64) -> Basis {
         let t = self.clamped(t);
         let span = self.span(t);
-        let mut values = vec![1.0];
-        let mut derivatives = vec![0.0];
+        let none = [0.0; Self::MAX_DEGREE + 1];
+        let first = span - self.degree;
+        let mut basis = Basis { first, count: self.degree + 1, values: none, derivatives: none };
+        basis.values[0] = 1.0;
         for degree in 1..=self.degree {
-            let mut raised = vec![0.0; degree + 1];
-            let mut slopes = vec![0.0; degree + 1];
-            for (i, lower) in values.iter().enumerate() {
-                let start = self.knots[span + 1 + i - degree];
-                let end = self.knots[span + 1 + i];
-                // Never zero: the interval holds the piece, which has a length.
-                let share = lower / (end - start);
-                raised[i] += (end - t) * share;
-                raised[i + 1] += (t - start) * share;
-                slopes[i] -= degree as f64 * share;
-                slopes[i + 1] += degree as f64 * share;
+            let (mut carry, mut slope_carry) = (0.0, 0.0);
+            for i in 0..degree {
+                let (start, end) = (self.knots[span + 1 + i - degree], self.knots[span + 1 + i]);
+                // The length is never zero: the interval holds the piece, which has one.
+                let share = basis.values[i] / (end - start);
+                basis.values[i] = carry + (end - t) * share;
+                carry = (t - start) * share;
+                // Only those of the last round are the derivatives; they overwrite the others.
+                basis.derivatives[i] = slope_carry - degree as f64 * share;
+                slope_carry = degree as f64 * share;
             }
-            (values, derivatives) = (raised, slopes);
+            basis.values[degree] = carry;
+            basis.derivatives[degree] = slope_carry;
         }
-        Basis { first: span - self.degree, values, derivatives }
+        basis
     }
 
     /// A curve over these knots as Bézier pieces, which is what inserting every knot up to the

@@ -82,10 +82,10 @@ impl NurbsSurface {
             along_v.iter().enumerate().map(|(j, weight)| *weight * row(j)).sum()
         };
         rational_point(
-            blend(&bu.values, &bv.values),
-            blend(&bu.derivatives, &bv.values),
-            blend(&bu.values, &bv.derivatives),
-            blend(&bu.derivatives, &bv.derivatives),
+            blend(bu.values(), bv.values()),
+            blend(bu.derivatives(), bv.values()),
+            blend(bu.values(), bv.derivatives()),
+            blend(bu.derivatives(), bv.derivatives()),
         )
     }
 

@@ -138,7 +138,7 @@ proptest! {
         let basis = knots.basis_functions(t);
         prop_assert!((basis.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         prop_assert!(basis.iter().all(|b| *b >= -1e-12));
-        prop_assert!(knots.basis(t).derivatives.iter().sum::<f64>().abs() < 1e-9);
+        prop_assert!(knots.basis(t).derivatives().iter().sum::<f64>().abs() < 1e-9);
     }
 
     #[test]

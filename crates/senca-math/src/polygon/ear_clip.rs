@@ -28,7 +28,25 @@ const VISIT_BUDGET: u64 = 100_000_000;
 /// self-crossing loop gives some cover of what it encloses.
 #[must_use]
 pub fn triangulate(corners: &[DVec2]) -> Vec<[u32; 3]> {
-    triangulate_with_holes(corners, &[])
+    match *corners {
+        [a, b, c, d] => quad_triangles([a, b, c, d]),
+        _ => None,
+    }
+    .unwrap_or_else(|| triangulate_with_holes(corners, &[]))
+}
+
+/// The common case of four corners: one diagonal, from the first corner or from the one that turns
+/// inwards. `None` for a quad that crosses itself or has a corner without area.
+fn quad_triangles(p: [DVec2; 4]) -> Option<Vec<[u32; 3]>> {
+    let area = signed_area(&p);
+    let turns: [f64; 4] = std::array::from_fn(|i| area * cross(p[(i + 3) % 4], p[i], p[(i + 1) % 4]));
+    let inwards: u32 = turns.iter().map(|t| u32::from(*t < 0.0)).sum();
+    if inwards > 1 || !turns.iter().all(|t| t.is_finite() && *t != 0.0) {
+        return None;
+    }
+    let from = turns.iter().position(|t| *t < 0.0).unwrap_or(0) as u32;
+    let corner = |k: u32| (from + k) % 4;
+    Some(vec![[from, corner(1), corner(2)], [from, corner(2), corner(3)]])
 }
 
 /// The same for a polygon with holes. `corners` holds the outer loop and then the holes' loops, of
@@ -269,7 +287,7 @@ impl Clipper {
             p != a && p != b && p != c && in_triangle(p, a, b, c)
         };
         let gone = |k: u32| nodes[k as usize].cut;
-        let (visits, found) = self.grid.any(a.min(b).min(c), a.max(b).max(c), gone, blocks);
+        let (visits, found) = self.grid.any([a, b, c], gone, blocks);
         self.visits += visits;
         !found
     }
@@ -291,6 +309,7 @@ impl Clipper {
 /// Nodes by the cell they lie in.
 struct Grid {
     min: DVec2,
+    max: DVec2,
     cells_per_unit: DVec2,
     side: usize,
     /// Where each cell's nodes start and end in `nodes`.
@@ -307,7 +326,7 @@ impl Grid {
         let per_unit = DVec2::splat(side as f64) / (max - min);
         let cells_per_unit = DVec2::select(per_unit.is_finite_mask(), per_unit, DVec2::ZERO);
         let mut grid =
-            Self { min, cells_per_unit, side, ranges: vec![(0, 0); side * side], nodes: Vec::new() };
+            Self { min, max, cells_per_unit, side, ranges: vec![(0, 0); side * side], nodes: Vec::new() };
         grid.fill(members, points().map(|p| grid.cell_index(p)).collect());
         grid
     }
@@ -329,35 +348,63 @@ impl Grid {
         }
     }
 
-    /// Whether some node in the cells under a box fulfils `test`, and how much was looked at. Nodes
-    /// that are `gone` are dropped on the way.
+    /// Whether some node in the cells under a triangle fulfils `test`, and how much was looked at.
+    /// Nodes that are `gone` are dropped on the way.
     fn any(
         &mut self,
-        min: DVec2,
-        max: DVec2,
+        triangle: [DVec2; 3],
         gone: impl Fn(u32) -> bool,
         test: impl Fn(u32) -> bool,
     ) -> (u64, bool) {
-        let ((x0, y0), (x1, y1)) = (self.cell(min), self.cell(max));
-        let mut visits = 0;
-        for (y, x) in (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| (y, x))) {
-            let (start, end) = &mut self.ranges[y * self.side + x];
-            let mut k = *start;
-            while k < *end {
-                visits += 1;
-                let node = self.nodes[k as usize];
-                if gone(node) {
-                    *end -= 1;
-                    self.nodes.swap(k as usize, *end as usize);
-                } else if test(node) {
-                    return (visits, true);
-                } else {
-                    k += 1;
+        let mut visits = 1;
+        for row in self.rows(triangle) {
+            let Some(columns) = self.columns(triangle, row) else { continue };
+            visits += columns.clone().count() as u64;
+            for column in columns {
+                let (start, end) = &mut self.ranges[row * self.side + column];
+                let mut k = *start;
+                while k < *end {
+                    visits += 1;
+                    let node = self.nodes[k as usize];
+                    if gone(node) {
+                        *end -= 1;
+                        self.nodes.swap(k as usize, *end as usize);
+                    } else if test(node) {
+                        return (visits, true);
+                    } else {
+                        k += 1;
+                    }
                 }
             }
-            visits += 1;
         }
         (visits, false)
+    }
+
+    fn rows(&self, [a, b, c]: [DVec2; 3]) -> std::ops::RangeInclusive<usize> {
+        self.cell(a.min(b).min(c)).1..=self.cell(a.max(b).max(c)).1
+    }
+
+    /// The columns that a triangle covers within a row, one more on each side against rounding. Long
+    /// thin triangles cover far fewer cells than the box around them.
+    fn columns(&self, [a, b, c]: [DVec2; 3], row: usize) -> Option<std::ops::RangeInclusive<usize>> {
+        let height = (self.max.y - self.min.y) / self.side as f64;
+        let low = self.min.y + height * row as f64;
+        let high = (low + height).min(self.max.y);
+        // A hair more, for nodes that rounding put in the neighbouring row.
+        let (low, high) = (low - 1e-9 * height, high + 1e-9 * height);
+        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
+            if q.y < low || p.y > high {
+                continue;
+            }
+            let x_at = |y: f64| p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y));
+            let ends = if q.y > p.y { [x_at(low.max(p.y)), x_at(high.min(q.y))] } else { [p.x, q.x] };
+            left = left.min(ends[0]).min(ends[1]);
+            right = right.max(ends[0]).max(ends[1]);
+        }
+        let column = |x: f64| self.cell(DVec2::new(x, low)).0;
+        (left <= right).then(|| column(left).saturating_sub(1)..=(column(right) + 1).min(self.side - 1))
     }
 
     fn cell(&self, p: DVec2) -> (usize, usize) {

@@ -77,6 +77,30 @@ fn concave_polygons_are_covered_in_both_orientations() {
 }
 
 #[test]
+fn quads_are_cut_at_the_corner_that_turns_inwards() {
+    let square = points(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    assert_eq!(triangulate(&square), [[0, 1, 2], [0, 2, 3]]);
+    let mut dart = points(&[[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]]);
+    for _ in 0..4 {
+        assert_covers(&dart, &triangulate(&dart), 4.0);
+        dart.rotate_left(1);
+    }
+    dart.reverse();
+    assert_covers(&dart, &triangulate(&dart), -4.0);
+}
+
+#[test]
+fn a_spiral_is_covered() {
+    let arm = |r: f64| {
+        (0..600).map(move |k| DVec2::from_angle(f64::from(k) * 0.1) * (1.0 + f64::from(k) * 0.05 + r))
+    };
+    let corners: Vec<_> = arm(0.5).chain(arm(0.0).collect::<Vec<_>>().into_iter().rev()).collect();
+    let triangles = triangulate(&corners);
+    assert_eq!(triangles.len(), corners.len() - 2);
+    assert_covers(&corners, &triangles, signed_area(&corners));
+}
+
+#[test]
 fn collinear_corners_are_all_used() {
     let corners = points(&[
         [0.0, 0.0],
@@ -162,7 +186,7 @@ fn polygons_in_space_keep_their_normal() {
 
 proptest! {
     #[test]
-    fn star_shaped_polygons_are_covered(radii in prop::collection::vec(0.1..5.0f64, 3..60)) {
+    fn star_shaped_polygons_are_covered(radii in prop::collection::vec(0.1..5.0f64, 3..400)) {
         let n = radii.len() as f64;
         let corners: Vec<_> = radii
             .iter()
@@ -172,6 +196,32 @@ proptest! {
         let triangles = triangulate(&corners);
         prop_assert_eq!(triangles.len(), corners.len() - 2);
         assert_covers(&corners, &triangles, signed_area(&corners));
+    }
+
+    #[test]
+    fn many_holes_are_left_out(
+        radii in prop::collection::vec(prop::collection::vec(0.05..0.49f64, 3..12), 1..40),
+        turn in 0.0..6.0f64,
+        aligned in any::<bool>(),
+    ) {
+        let turn = DVec2::from_angle(if aligned { 0.0 } else { turn });
+        let side = (radii.len() as f64).sqrt().ceil();
+        let mut corners = points(&[[-0.5, -0.5], [side - 0.5, -0.5], [side - 0.5, side - 0.5], [-0.5, side - 0.5]]);
+        let mut starts = Vec::new();
+        let mut area = side * side;
+        for (k, hole) in radii.iter().enumerate() {
+            let center = DVec2::new(k as f64 % side, (k as f64 / side).floor());
+            let step = std::f64::consts::TAU / hole.len() as f64;
+            let star: Vec<_> =
+                hole.iter().enumerate().map(|(i, r)| center + DVec2::from_angle(step * i as f64) * *r).collect();
+            area -= signed_area(&star);
+            starts.push(corners.len());
+            corners.extend(star);
+        }
+        corners.iter_mut().for_each(|p| *p = turn.rotate(*p));
+        let triangles = triangulate_with_holes(&corners, &starts);
+        prop_assert_eq!(triangles.len(), corners.len() - 2 + 2 * starts.len());
+        assert_covers(&corners, &triangles, area);
     }
 
     #[test]

@@ -476,10 +476,10 @@ prop_compose! {
         vpn in prop::array::uniform3(-1.0..1.0f64),
         vup in prop::array::uniform3(-1.0..1.0f64),
         prp_xy in prop::array::uniform2(-3.0..3.0f64),
-        eye in 1.0..10.0f64,
+        eye in prop_oneof![-10.0..-1.0, 1.0..10.0f64],
         low in prop::array::uniform2(-4.0..1.0f64),
         size in prop::array::uniform2(0.5..5.0f64),
-        front in -5.0..0.8f64,
+        gap in 0.2..9.0f64,
         depth in 0.5..20.0f64,
     ) -> ViewParameters {
         ViewParameters {
@@ -488,8 +488,9 @@ prop_compose! {
             vup: vup.into(),
             prp: DVec3::new(prp_xy[0], prp_xy[1], eye),
             window: ViewWindow::new(low[0], low[0] + size[0], low[1], low[1] + size[1]),
-            front: front * eye,
-            back: front * eye - depth,
+            // Before the eye, on either side of the view plane.
+            front: eye - gap,
+            back: eye - gap - depth,
         }
     }
 }

@@ -39,7 +39,7 @@ fn the_sample_patch_gives_the_printed_mesh() {
 
 #[test]
 fn the_middle_of_the_sample_patch() {
-    let middle = on_patch(&sample()[0].points, DVec2::splat(0.5));
+    let middle = BicubicPatch::from_list(sample()[0].points).at(0.5, 0.5);
     assert!((middle - DVec3::new(1.5, 3.0, 1.6875)).length() < 1e-12);
 }
 

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use senca_math::BicubicPatch;
 use senca_math::glam::{DVec2, DVec3};
 
 use super::build::Builder;
@@ -43,7 +44,14 @@ pub(super) fn bezier_patches(
     edges.add_points(b);
     let mut seams = Vec::new();
     for (patch, plan) in patches.iter().zip(&plans) {
-        add_patch(patch, plan, surfaces[&patch.surface], &edges, &mut seams, b);
+        add_patch(
+            &BicubicPatch::from_list(patch.points),
+            plan,
+            surfaces[&patch.surface],
+            &edges,
+            &mut seams,
+            b,
+        );
     }
     smooth_seams(seams, b);
     Ok(())
@@ -136,7 +144,7 @@ struct Seam {
 
 /// Appends one patch.
 fn add_patch(
-    patch: &BezierPatch,
+    patch: &BicubicPatch,
     plan: &Plan,
     surface: u32,
     edges: &Edges,
@@ -174,7 +182,7 @@ fn add_patch(
 
 /// Vertices along the four edges, in the order of [`Plan::edges`]; corners are shared.
 fn border_rows(
-    patch: &BezierPatch,
+    patch: &BicubicPatch,
     plan: &Plan,
     surface: u32,
     edges: &Edges,
@@ -198,7 +206,7 @@ fn border_rows(
             }
             let uv = place(side, t);
             let point = edges.point(edge, i);
-            let vertex = b.vertex(point, normal(&patch.points, uv), uv);
+            let vertex = b.vertex(point, sample(patch, uv).1, uv);
             seams.push(Seam { surface, point, vertex });
             (t, vertex)
         });
@@ -215,13 +223,14 @@ fn border_rows(
 }
 
 /// Vertices strictly inside, row after row, with their u.
-fn inside_rows(patch: &BezierPatch, nu: u32, nv: u32, b: &mut Builder) -> Vec<Vec<(f64, u32)>> {
+fn inside_rows(patch: &BicubicPatch, nu: u32, nv: u32, b: &mut Builder) -> Vec<Vec<(f64, u32)>> {
     let mut row = |j: u32| {
         let v = f64::from(j) / f64::from(nv);
         let vertex = |i: u32| {
             let uv = DVec2::new(f64::from(i) / f64::from(nu), v);
-            let point = b.point(on_patch(&patch.points, uv));
-            (uv.x, b.vertex(point, normal(&patch.points, uv), uv))
+            let (place, normal) = sample(patch, uv);
+            let point = b.point(place);
+            (uv.x, b.vertex(point, normal, uv))
         };
         (1..nu).map(vertex).collect()
     };
@@ -230,7 +239,7 @@ fn inside_rows(patch: &BezierPatch, nu: u32, nv: u32, b: &mut Builder) -> Vec<Ve
 
 /// The patch as one regular grid, when edges and inside have the same steps.
 fn add_grid(
-    patch: &BezierPatch,
+    patch: &BicubicPatch,
     [nu, nv]: [u32; 2],
     surface: u32,
     rows: &[Vec<(f64, u32)>; 4],
@@ -266,34 +275,13 @@ fn smooth_seams(mut seams: Vec<Seam>, b: &mut Builder) {
     }
 }
 
-/// Point of a patch at `(u, v)`.
-pub(crate) fn on_patch(p: &[DVec3; 16], uv: DVec2) -> DVec3 {
-    let rows: Cubic = std::array::from_fn(|r| {
-        super::stitch::on_cubic(&[p[4 * r], p[4 * r + 1], p[4 * r + 2], p[4 * r + 3]], uv.x)
-    });
-    super::stitch::on_cubic(&rows, uv.y)
-}
-
-/// Derivative of a cubic curve.
-fn slope(c: &Cubic, t: f64) -> DVec3 {
-    let (a, b) = ((c[1] - c[0]).lerp(c[2] - c[1], t), (c[2] - c[1]).lerp(c[3] - c[2], t));
-    3.0 * a.lerp(b, t)
-}
-
-/// Unit normal at `(u, v)`, the direction of `dS/du x dS/dv`. Where that vanishes (collapsed edges),
-/// the limit from inside, found by stepping towards the middle until it does not.
-pub(super) fn normal(p: &[DVec3; 16], uv: DVec2) -> DVec3 {
-    let row = |r: usize| [p[4 * r], p[4 * r + 1], p[4 * r + 2], p[4 * r + 3]];
-    let column = |c: usize| [p[c], p[4 + c], p[8 + c], p[12 + c]];
-    let scale = (0..4).flat_map(|i| [row(i), column(i)]).map(|c| c[0].distance(c[3])).fold(0.0, f64::max);
-    for inward in [0.0, 1e-6, 1e-4, 1e-2, 0.1] {
-        let uv = uv.lerp(DVec2::splat(0.5), inward);
-        let rows: Cubic = std::array::from_fn(|r| super::stitch::on_cubic(&row(r), uv.x));
-        let columns: Cubic = std::array::from_fn(|c| super::stitch::on_cubic(&column(c), uv.y));
-        let cross = slope(&columns, uv.x).cross(slope(&rows, uv.y));
-        if cross.length() > 1e-9 * scale * scale {
-            return cross.normalize();
-        }
-    }
-    DVec3::Y
+/// Place and unit normal at `(u, v)`; +y for a patch that is a curve or a point there.
+fn sample(patch: &BicubicPatch, uv: DVec2) -> (DVec3, DVec3) {
+    let at = patch.evaluate(uv.x, uv.y);
+    let cross = at.du.cross(at.dv);
+    // Where the derivatives are near vanishing, the limit, which takes longer to find.
+    let size = at.du.length_squared().max(at.dv.length_squared());
+    let clear = cross.length_squared() > 1e-12 * size * size;
+    let normal = if clear { Some(cross.normalize()) } else { patch.normal(uv.x, uv.y) };
+    (at.position, normal.unwrap_or(DVec3::Y))
 }

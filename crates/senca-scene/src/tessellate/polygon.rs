@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use senca_math::glam::{DVec2, DVec3};
+use senca_math::polygon::{is_convex, signed_area};
+use senca_math::{newell_normal, triangulate, triangulate_with_holes};
 
 use super::build::Builder;
-use super::ears::{doubled_area, triangulate};
 use super::{ShapeError, TessellationSettings, positive};
 use crate::{Faces, Mesh, compute_normals, newell_vector, split_quad};
 
@@ -54,11 +55,13 @@ pub fn triangulated(mesh: &Mesh) -> Faces {
 fn split_polygon(mesh: &Mesh, corners: &[u32], surface: u32, triangles: &mut Faces) {
     let normal = newell_vector(corners.iter().map(|&v| mesh.position(v))).as_dvec3();
     let (x_axis, y_axis) = axes_in_plane(normal.normalize_or(DVec3::Z));
-    let flat = corners
-        .iter()
-        .map(|&v| mesh.position(v).as_dvec3())
-        .map(|p| DVec2::new(p.dot(x_axis), p.dot(y_axis)));
-    for triangle in triangulate(&[flat.collect()]) {
+    let flat = corners.iter().map(|&v| mesh.position(v).as_dvec3());
+    let flat: Vec<DVec2> = flat.map(|p| DVec2::new(p.dot(x_axis), p.dot(y_axis))).collect();
+    if is_convex(&flat) {
+        let fan = (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]);
+        return fan.for_each(|triangle| triangles.push(&triangle, surface));
+    }
+    for triangle in triangulate(&flat) {
         triangles.push(&triangle.map(|i| corners[i as usize]), surface);
     }
 }
@@ -108,9 +111,8 @@ pub(super) fn polygon(outline: &[DVec3], holes: &[Vec<DVec3>], b: &mut Builder) 
 
 /// Unit mean normal of a polygon, 0 when it has none.
 fn newell_of(outline: &[DVec3]) -> DVec3 {
-    let first = outline[0];
-    let sum: DVec3 = outline.windows(2).map(|p| (p[0] - first).cross(p[1] - first)).sum();
-    let size = outline.iter().map(|p| p.distance_squared(first)).fold(0.0, f64::max);
+    let sum = newell_normal(outline);
+    let size = outline.iter().map(|p| p.distance_squared(outline[0])).fold(0.0, f64::max);
     if sum.length() > 1e-12 * size { sum.normalize_or_zero() } else { DVec3::ZERO }
 }
 
@@ -135,12 +137,16 @@ fn add_flat(rings: &[Vec<DVec2>], first: u32, back: bool, surface: u32, b: &mut 
     };
     if b.polygons && rings.len() == 1 {
         let mut corners: Vec<u32> = (first..first + rings[0].len() as u32).collect();
-        if doubled_area(&rings[0]) < 0.0 {
+        if signed_area(&rings[0]) < 0.0 {
             corners.reverse();
         }
         return b.mesh.faces.push(&turned(corners), surface);
     }
-    for triangle in triangulate(rings) {
+    let starts = rings[..rings.len() - 1].iter().scan(0, |start, ring| {
+        *start += ring.len();
+        Some(*start)
+    });
+    for triangle in triangulate_with_holes(&rings.concat(), &starts.collect::<Vec<_>>()) {
         b.mesh.faces.push(&turned(triangle.map(|i| first + i).to_vec()), surface);
     }
 }
@@ -153,7 +159,7 @@ pub(super) fn prism(base: &[DVec2], height: f64, capped: bool, b: &mut Builder) 
     }
     // Seen from above, x to the right and z down: (x, -z) is right-handed there.
     let mut seen: Vec<DVec2> = base.iter().map(|p| DVec2::new(p.x, -p.y)).collect();
-    let area = doubled_area(&seen);
+    let area = signed_area(&seen);
     if area == 0.0 {
         return malformed("prism", "the base has no area");
     }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use senca_math::CubicCurve;
 use senca_math::glam::DVec3;
 
 use super::build::Builder;
@@ -88,22 +89,15 @@ impl Edges {
             edge.points.push(start);
             for i in 1..edge.steps {
                 let t = f64::from(i) / f64::from(edge.steps);
-                edge.points.push(if collapsed { start } else { b.point(on_cubic(&edge.curve, t)) });
+                edge.points.push(if collapsed {
+                    start
+                } else {
+                    b.point(CubicCurve { points: edge.curve }.at(t))
+                });
             }
             edge.points.push(end);
         }
     }
-}
-
-/// Point of a Bézier curve at `t`, by repeated linear interpolation.
-pub(super) fn on_cubic(curve: &Cubic, t: f64) -> DVec3 {
-    let mut p = *curve;
-    for level in (1..4).rev() {
-        for i in 0..level {
-            p[i] = p[i].lerp(p[i + 1], t);
-        }
-    }
-    p[0]
 }
 
 /// Triangles between an outer and an inner row of vertices, the inner on the left of the outer's

@@ -92,7 +92,8 @@ fn channel(scene: &mut Scene) -> &mut Channel {
 
 #[test]
 fn indices_that_name_nothing_are_found() {
-    let cases: Vec<(&str, fn(&mut Scene))> = vec![
+    type Break = fn(&mut Scene);
+    let cases: Vec<(&str, Break)> = vec![
         ("geometry 7", |s| s.nodes[0].geometry = Some(GeometryId(7))),
         ("material 7", |s| s.nodes[0].material = Some(MaterialId(7))),
         ("light 7", |s| s.nodes[0].light = Some(LightId(7))),

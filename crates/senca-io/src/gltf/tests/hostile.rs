@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{Builder, Held, first_mesh, glb_of, warnings};
-use crate::{NoFiles, ReadError};
+use crate::{Files, Limits, NoFiles, ReadError};
 
 /// A small file that uses most of what there is.
 fn rich() -> Builder {
@@ -30,6 +30,19 @@ fn rich() -> Builder {
     file.json["animations"] = json!([{"samplers": [{"input": times, "output": vectors}],
         "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]);
     file
+}
+
+/// No files, and few elements beyond what the file's bytes bear out.
+struct Tight;
+
+impl Files for Tight {
+    fn read(&self, uri: &str) -> Result<Vec<u8>, ReadError> {
+        NoFiles.read(uri)
+    }
+
+    fn limits(&self) -> Limits {
+        Limits { made_elements: 100_000, ..Limits::default() }
+    }
 }
 
 fn message(error: &ReadError) -> String {
@@ -200,11 +213,11 @@ fn accessors_outside_of_their_buffers_are_named() {
 #[test]
 fn counts_without_bytes_stop_at_the_limit() {
     let mut file = Builder::new();
-    for count in [4_000_000_000u64, 60_000_000] {
+    for count in [4_000_000_000u64, 60_000] {
         let zeros = json!({"componentType": 5126, "type": "VEC3", "count": count});
         file.json["accessors"] = json!([zeros]);
         file.json["meshes"] = json!([{"primitives": [{"attributes": {"POSITION": 0}, "mode": 0}]}]);
-        let error = file.try_read().expect_err("too many");
+        let error = super::super::read("many.glb", &file.glb(), &Tight).expect_err("too many");
         assert!(matches!(error, ReadError::Limit { .. }), "{error}");
     }
 }
@@ -259,4 +272,43 @@ fn lost_pictures_are_warnings() {
     let scene = rich().read();
     assert!(warnings(&scene).contains("images[0]"), "{}", warnings(&scene));
     assert!(scene.textures.is_empty() && scene.images.is_empty());
+}
+
+/// Small files that name the same thing many times over must not grow without bound.
+#[test]
+fn what_is_named_many_times_is_bounded() {
+    let mut file = Builder::new();
+    let zeros = json!({"componentType": 5121, "type": "VEC3", "count": 1000});
+    file.json["accessors"] = json!([zeros]);
+    let primitives: Vec<Value> = (0..200)
+        .map(
+            |i| json!({"attributes": {"POSITION": 0, "NORMAL": 0}, "mode": 0, "targets": vec![json!({}); i]}),
+        )
+        .collect();
+    file.json["meshes"] = json!([{"primitives": primitives}]);
+    let result = super::super::read("many.glb", &file.glb(), &Tight);
+    assert!(matches!(result, Err(ReadError::Limit { .. })));
+    let mut file = Builder::new();
+    let position = file.square();
+    let nothing = vec![json!({}); 2000];
+    file.show(json!({"attributes": {"POSITION": position}, "mode": 0, "targets": nothing}));
+    file.json["meshes"][0]["weights"] = json!(vec![0; 2000]);
+    file.json["nodes"] = json!(vec![json!({"mesh": 0}); 2000]);
+    let result = super::super::read("many.glb", &file.glb(), &Tight);
+    assert!(matches!(result, Err(ReadError::Limit { .. })));
+}
+
+/// A parent with many children that the scene lists one by one, and a long chain above them.
+#[test]
+fn trees_take_time_in_proportion_to_their_size() {
+    let mut file = Builder::new();
+    let count = 60_000u32;
+    let mut nodes: Vec<Value> = (1..count).map(|i| json!({"children": [i]})).collect();
+    nodes.push(json!({"children": (count..2 * count).collect::<Vec<_>>()}));
+    nodes.resize(2 * count as usize, json!({}));
+    file.json["nodes"] = json!(nodes);
+    file.json["scenes"] = json!([{"nodes": (count..2 * count).collect::<Vec<_>>()}]);
+    let scene = file.read();
+    assert_eq!(scene.roots.len(), count as usize);
+    assert!(scene.nodes[count as usize - 1].children.is_empty());
 }

@@ -64,6 +64,30 @@ fn circles_and_second_parents_are_cut() {
 }
 
 #[test]
+fn scenes_that_list_children_show_them_once() {
+    let mut file = Builder::new();
+    file.json["nodes"] = json!([{"children": [1]}, {"children": [2]}, {}, {"children": [4, 5]}, {}, {}]);
+    file.json["scenes"] = json!([{"nodes": [2, 0, 4]}]);
+    let scene = file.read();
+    assert_eq!(scene.roots, [NodeId(0), NodeId(4)]);
+    assert_eq!(scene.nodes[3].children, [NodeId(5)], "cut from a parent that is not shown");
+    let said = warnings(&scene);
+    assert!(said.contains("node 2 is a child of another") && said.contains("node 4 has a parent"), "{said}");
+}
+
+#[test]
+fn places_too_far_away_are_left_out() {
+    let mut file = Builder::new();
+    file.json["nodes"] = json!([{"translation": [1e300, 0, 0], "scale": [2, 2, 2]}, {"rotation": [0, 0, 0, 0]},
+        {"matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]);
+    let scene = file.read();
+    let parts = |t| Transform::Parts { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: t };
+    assert_eq!(scene.nodes[0].transform, parts(DVec3::splat(2.0)));
+    assert_eq!((scene.nodes[1].transform, scene.nodes[2].transform), (parts(DVec3::ONE), parts(DVec3::ONE)));
+    assert_eq!(scene.warnings.len(), 3);
+}
+
+#[test]
 fn a_chain_of_100_000_nodes_is_no_problem() {
     let mut file = Builder::new();
     let nodes: Vec<_> =

@@ -139,19 +139,21 @@ impl MaterialWriter<'_> {
         Value::Object(json)
     }
 
-    /// The factor is at most 1; a power of two makes up for what is above, so that no bit is lost.
+    /// The factor is at most 1; a strength makes up for what is above. Their product, in double
+    /// precision, rounds back to the same bits.
     fn emission(
         &mut self,
         material: &Material,
         json: &mut Map<String, Value>,
         extensions: &mut Map<String, Value>,
     ) {
-        let largest = material.emission.max_component();
+        let largest = f64::from(material.emission.max_component());
         if largest <= 0.0 || !material.emission.is_finite() {
             return;
         }
-        let strength = if largest > 1.0 { largest.log2().ceil().exp2().max(1.0) } else { 1.0 };
-        set(json, "emissiveFactor", numbers(&unit(material.emission * (1.0 / strength))));
+        let strength = largest.max(1.0);
+        let factor = material.emission.to_array().map(|v| f64::from(v.max(0.0)) / strength);
+        set(json, "emissiveFactor", numbers(&factor));
         if strength > 1.0 {
             self.extend(extensions, "KHR_materials_emissive_strength", json!({"emissiveStrength": strength}));
         }

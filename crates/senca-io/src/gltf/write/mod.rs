@@ -10,6 +10,7 @@
 //! - The same scene gives the same bytes.
 
 mod animation;
+mod camera;
 mod material;
 mod mesh;
 mod node;

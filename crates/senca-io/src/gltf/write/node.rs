@@ -1,12 +1,11 @@
-//! Nodes, cameras, lights and skins.
+//! Nodes, lights and skins.
 
 use serde_json::{Map, Value, json};
 
 use senca_scene::math::LinearRgb;
-use senca_scene::{
-    Attenuation, Camera, Light, LightKind, Node, Projection, Scene, Shape, Skin, SpotFalloff, Transform,
-};
+use senca_scene::{Attenuation, Light, LightKind, Node, Scene, Shape, Skin, SpotFalloff, Transform};
 
+use super::camera::CameraPlace;
 use super::mesh::{MeshNumbers, node_material};
 use super::{Output, Target, named, numbers, set};
 
@@ -16,13 +15,15 @@ const SPOT_END: f64 = 0.01;
 impl Output {
     /// Writes everything that nodes name, the nodes, and the scene that shows them.
     pub(super) fn add_nodes(&mut self, scene: &Scene, meshes: &MeshNumbers) {
-        for camera in &scene.cameras {
-            self.push("cameras", camera_json(camera));
-        }
+        let cameras: Vec<CameraPlace> = scene.cameras.iter().map(|camera| self.add_camera(camera)).collect();
         let lights: Vec<Option<usize>> = scene.lights.iter().map(|light| self.add_light(light)).collect();
         let skins: Vec<Option<usize>> = scene.skins.iter().map(|skin| self.add_skin(scene, skin)).collect();
+        let mut camera_nodes = Vec::new();
         for node in &scene.nodes {
-            let json = self.node_json(scene, node, meshes, &lights, &skins);
+            let json = self.node_json(scene, node, meshes, &lights, &skins, &cameras, &mut camera_nodes);
+            self.push("nodes", json);
+        }
+        for json in camera_nodes {
             self.push("nodes", json);
         }
         let mut json = named(&scene.name);
@@ -41,19 +42,27 @@ impl Output {
         meshes: &MeshNumbers,
         lights: &[Option<usize>],
         skins: &[Option<usize>],
+        cameras: &[CameraPlace],
+        camera_nodes: &mut Vec<Value>,
     ) -> Value {
         let mut json = named(&node.name);
         self.set_transform(&mut json, node);
         let count = scene.nodes.len();
-        let children: Vec<u32> =
+        let mut children: Vec<u32> =
             node.children.iter().map(|c| c.0).filter(|&c| (c as usize) < count).collect();
+        match node.camera.and_then(|c| cameras.get(c.index())) {
+            Some(CameraPlace::Here(camera)) => set(&mut json, "camera", json!(camera)),
+            Some(CameraPlace::Moved(camera, node_from_camera)) => {
+                children.push((count + camera_nodes.len()) as u32);
+                let matrix = numbers(&node_from_camera.to_cols_array());
+                camera_nodes.push(json!({"camera": camera, "matrix": matrix}));
+            }
+            Some(CameraPlace::LeftOut) | None => {}
+        }
         if !children.is_empty() {
             set(&mut json, "children", json!(children));
         }
         set_mesh(&mut json, scene, node, meshes, skins);
-        if let Some(camera) = node.camera.filter(|c| c.index() < scene.cameras.len()) {
-            set(&mut json, "camera", json!(camera.0));
-        }
         if let Some(light) = node.light.and_then(|l| *lights.get(l.index())?) {
             set(&mut json, "extensions", json!({"KHR_lights_punctual": {"light": light}}));
         }
@@ -129,13 +138,13 @@ impl Output {
     }
 }
 
-/// A colour in [0, 1], and an intensity that makes up for what is above (a power of two, so that no
-/// bit is lost).
+/// A colour whose largest component is 1, and the intensity that makes up for it. Their product, in
+/// double precision, rounds back to the same bits.
 fn set_color(json: &mut Map<String, Value>, color: LinearRgb) {
-    let color = color.map(|v| if v.is_finite() { v.max(0.0) } else { 0.0 });
-    let largest = color.max_component();
-    let intensity = if largest > 1.0 { largest.log2().ceil().exp2() } else { 1.0 };
-    set(json, "color", numbers(&(color * (1.0 / intensity)).to_array()));
+    let color = color.to_array().map(|v| if v.is_finite() { f64::from(v.max(0.0)) } else { 0.0 });
+    let largest = color.into_iter().fold(0.0, f64::max);
+    let intensity = if largest > 0.0 { largest } else { 1.0 };
+    set(json, "color", numbers(&color.map(|v| v / intensity)));
     set(json, "intensity", json!(intensity));
 }
 
@@ -181,30 +190,4 @@ fn set_mesh(
     if let Some(skin) = skin.filter(|_| !shape.joints.is_empty()) {
         set(json, "skin", json!(skin));
     }
-}
-
-fn camera_json(camera: &Camera) -> Value {
-    let mut json = named(&camera.name);
-    let mut projection = Map::new();
-    match camera.projection {
-        Projection::Perspective { yfov, aspect, near, far } => {
-            set(&mut projection, "yfov", json!(yfov));
-            set(&mut projection, "znear", json!(near.unwrap_or(0.01)));
-            aspect.into_iter().for_each(|a| set(&mut projection, "aspectRatio", json!(a)));
-            far.into_iter().for_each(|f| set(&mut projection, "zfar", json!(f)));
-            set(&mut json, "type", json!("perspective"));
-            set(&mut json, "perspective", Value::Object(projection));
-        }
-        Projection::Orthographic { height, aspect, near, far } => {
-            let half = 0.5 * height;
-            set(&mut projection, "xmag", json!(half * aspect.unwrap_or(1.0)));
-            set(&mut projection, "ymag", json!(half));
-            let near = near.unwrap_or(0.0);
-            set(&mut projection, "znear", json!(near));
-            set(&mut projection, "zfar", json!(far.unwrap_or(near + 1e4)));
-            set(&mut json, "type", json!("orthographic"));
-            set(&mut json, "orthographic", Value::Object(projection));
-        }
-    }
-    Value::Object(json)
 }

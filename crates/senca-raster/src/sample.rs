@@ -1,0 +1,369 @@
+//! Textures read for sixteen fragments at once: the vector twin of [`Sampler::sample`].
+//!
+//! Texels of 8 bits are mixed with weights of 8 bits in integers, so the position between texels is
+//! resolved to 1/256; the sums keep all their 16 bits. Two texels beside each other are fetched as one
+//! 64-bit word except where the coordinate wraps between them. Floating-point textures are mixed in
+//! floating point, to the bits of the plain form.
+//!
+//! The level of detail comes from the exact derivatives at each fragment, not from differences.
+
+use crate::api::{LANES, MAX_VARYINGS, TextureUnit};
+use crate::batch::{Batch, PlaneLanes};
+use crate::blend::Rgba;
+use crate::cover::{At, varying};
+use crate::texture::{
+    FARTHEST_TEXEL, Filter, LOG2, Mip, Sampler, TexelGrid, Texels, Texture, TextureLevel, Wrap,
+};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
+
+type F<S> = f32x16<S>;
+type I<S> = i32x16<S>;
+
+/// Texture colour at the lanes of `mask`; other lanes hold anything. `slot` has u, the next one v.
+///
+/// A function of its own in the compiled kernel, not part of its caller, as is [`read`]: inlined, they
+/// make code of many megabytes.
+#[inline(always)]
+pub(crate) fn sample<S: Simd>(
+    simd: S,
+    unit: &TextureUnit<'_>,
+    batch: &Batch,
+    lane: usize,
+    slot: usize,
+    at: &At<S>,
+    mask: mask32x16<S>,
+) -> Rgba<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || sample_inline(simd, unit, batch, lane, slot, at, mask),
+    )
+}
+
+#[inline(always)]
+fn sample_inline<S: Simd>(
+    simd: S,
+    unit: &TextureUnit<'_>,
+    batch: &Batch,
+    lane: usize,
+    slot: usize,
+    at: &At<S>,
+    mask: mask32x16<S>,
+) -> Rgba<S> {
+    let (tu, tv) = (&batch.varyings[slot % MAX_VARYINGS], &batch.varyings[(slot + 1) % MAX_VARYINGS]);
+    let uv = [varying(simd, tu, lane, at), varying(simd, tv, lane, at)];
+    let (sampler, texture) = (&unit.sampler, unit.texture);
+    let mips = sampler.mip != Mip::None && texture.levels.len() > 1;
+    if !mips && sampler.magnify == sampler.minify {
+        return read(simd, sampler, &texture.levels[0], uv, sampler.minify);
+    }
+    let lod = lod(simd, sampler, texture, batch, lane, [tu, tv], at);
+    let zero = F::splat(simd, 0.0);
+    let minified = lod.simd_gt(zero) & mask;
+    let mut out = [zero; 4];
+    if (!minified & mask).any_true() {
+        out = read(simd, sampler, &texture.levels[0], uv, sampler.magnify);
+    }
+    if !minified.any_true() {
+        return out;
+    }
+    let lod = lod.min(F::splat(simd, (texture.levels.len() - 1) as f32));
+    let level: F<S> = match sampler.mip {
+        Mip::None => zero,
+        Mip::Nearest => (lod + F::splat(simd, 0.5)).floor(),
+        Mip::Linear => lod.floor(),
+    };
+    // Level by level: a vector seldom meets more than two.
+    let numbers: [i32; LANES] = level.to_int::<I<S>>().to_array();
+    let mut left = minified.to_bitmask() as u32 & 0xffff;
+    while left != 0 {
+        let number = numbers[left.trailing_zeros() as usize % LANES];
+        let here = minified & level.simd_eq(F::splat(simd, number as f32));
+        let color = one_level(simd, sampler, texture, number as usize, uv, lod - level);
+        out = select4(here, color, out);
+        left &= !(here.to_bitmask() as u32);
+    }
+    out
+}
+
+/// Colour where level `number` is the finer one.
+#[inline(always)]
+fn one_level<S: Simd>(
+    simd: S,
+    sampler: &Sampler,
+    texture: &Texture,
+    number: usize,
+    uv: [F<S>; 2],
+    t: F<S>,
+) -> Rgba<S> {
+    let last = texture.levels.len() - 1;
+    let fine = read(simd, sampler, &texture.levels[number.min(last)], uv, sampler.minify);
+    if sampler.mip != Mip::Linear {
+        return fine;
+    }
+    let coarse = read(simd, sampler, &texture.levels[(number + 1).min(last)], uv, sampler.minify);
+    lerp(fine, coarse, t)
+}
+
+#[inline(always)]
+fn select4<S: Simd>(mask: mask32x16<S>, a: Rgba<S>, b: Rgba<S>) -> Rgba<S> {
+    [mask.select(a[0], b[0]), mask.select(a[1], b[1]), mask.select(a[2], b[2]), mask.select(a[3], b[3])]
+}
+
+#[inline(always)]
+fn lerp<S: Simd>(a: Rgba<S>, b: Rgba<S>, t: F<S>) -> Rgba<S> {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t, a[3] + (b[3] - a[3]) * t]
+}
+
+/// Level of detail; see [`Sampler::lod`].
+#[inline(always)]
+fn lod<S: Simd>(
+    simd: S,
+    sampler: &Sampler,
+    texture: &Texture,
+    batch: &Batch,
+    lane: usize,
+    [tu, tv]: [&PlaneLanes; 2],
+    at: &At<S>,
+) -> F<S> {
+    let term = |t: &PlaneLanes, k: usize| t[k][lane % LANES];
+    let [u1, u2, v1, v2] = [term(tu, 1), term(tu, 2), term(tv, 1), term(tv, 2)];
+    let ([u1, u2], [v1, v2]) =
+        ([F::splat(simd, u1), F::splat(simd, u2)], [F::splat(simd, v1), F::splat(simd, v2)]);
+    let [[ux, vx], [uy, vy]] = if at.affine {
+        [[u1, v1], [u2, v2]]
+    } else {
+        let x = weight_change(simd, batch, lane, at, 1);
+        let y = weight_change(simd, batch, lane, at, 2);
+        [[x[0] * u1 + x[1] * u2, x[0] * v1 + x[1] * v2], [y[0] * u1 + y[1] * u2, y[0] * v1 + y[1] * v2]]
+    };
+    let (w, h) = (F::splat(simd, texture.width() as f32), F::splat(simd, texture.height() as f32));
+    let (x, y) = (square(ux * w, vx * h), square(uy * w, vy * h));
+    let larger = x.simd_gt(y).select(x, y);
+    F::splat(simd, 0.5) * log2(simd, larger) + F::splat(simd, sampler.lod_bias)
+}
+
+/// Change of the weights of corners 1 and 2 per pixel in x (`axis` 1) or y (2).
+#[inline(always)]
+fn weight_change<S: Simd>(simd: S, batch: &Batch, lane: usize, at: &At<S>, axis: usize) -> [F<S>; 2] {
+    let lane = lane % LANES;
+    let [b1, b2, w] = at.weights;
+    let q = F::splat(simd, batch.inv_w[axis][lane]);
+    [(F::splat(simd, batch.b1[axis][lane]) - b1 * q) * w, (F::splat(simd, batch.b2[axis][lane]) - b2 * q) * w]
+}
+
+#[inline(always)]
+fn square<S: Simd>(a: F<S>, b: F<S>) -> F<S> {
+    a * a + b * b
+}
+
+/// See [`crate::texture::log2`].
+#[inline(always)]
+fn log2<S: Simd>(simd: S, v: F<S>) -> F<S> {
+    let bits: u32x16<S> = v.bitcast();
+    let exponent: I<S> = (bits >> 23).bitcast::<I<S>>() - I::splat(simd, 127);
+    let one = u32x16::splat(simd, 0x3f80_0000);
+    let m = ((bits & u32x16::splat(simd, 0x007f_ffff)) | one).bitcast::<F<S>>() - F::splat(simd, 1.0);
+    let p = F::splat(simd, LOG2[4]);
+    let p = p * m + F::splat(simd, LOG2[3]);
+    let p = p * m + F::splat(simd, LOG2[2]);
+    let p = p * m + F::splat(simd, LOG2[1]);
+    let p = p * m + F::splat(simd, LOG2[0]);
+    exponent.to_float::<F<S>>() + p * m
+}
+
+/// Colour of one level; see [`Sampler::read`].
+#[inline(always)]
+fn read<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2], filter: Filter) -> Rgba<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || read_inline(simd, sampler, level, uv, filter),
+    )
+}
+
+#[inline(always)]
+fn read_inline<S: Simd>(
+    simd: S,
+    sampler: &Sampler,
+    level: &TextureLevel,
+    uv: [F<S>; 2],
+    filter: Filter,
+) -> Rgba<S> {
+    let x = position(simd, sampler.grid, uv[0], level.width);
+    let y = position(simd, sampler.grid, uv[1], level.height);
+    match filter {
+        Filter::Nearest => nearest(simd, sampler, level, x, y),
+        Filter::Linear => bilinear(simd, sampler, level, x, y),
+    }
+}
+
+/// See [`TexelGrid::position`]; held within +-[`FARTHEST_TEXEL`], 0 where it is not a number.
+#[inline(always)]
+fn position<S: Simd>(simd: S, grid: TexelGrid, u: F<S>, n: u32) -> F<S> {
+    let p = match grid {
+        TexelGrid::Areas => u * F::splat(simd, n as f32) - F::splat(simd, 0.5),
+        TexelGrid::Points => u * F::splat(simd, (n - 1) as f32),
+    };
+    let number = p.is_nan().select(F::splat(simd, 0.0), p);
+    number.max(F::splat(simd, -FARTHEST_TEXEL)).min(F::splat(simd, FARTHEST_TEXEL))
+}
+
+/// See [`Wrap::apply`].
+#[inline(always)]
+fn wrapped<S: Simd>(simd: S, wrap: Wrap, i: I<S>, n: u32) -> I<S> {
+    let n = n as i32;
+    let last = I::splat(simd, n - 1);
+    match wrap {
+        Wrap::Clamp => i.max(I::splat(simd, 0)).min(last),
+        Wrap::Repeat => remainder(simd, i, n),
+        Wrap::Mirror => {
+            let j = remainder(simd, i, 2 * n);
+            j.simd_le(last).select(j, I::splat(simd, 2 * n - 1) - j)
+        }
+    }
+}
+
+/// `i` modulo `n`, never negative.
+#[inline(always)]
+fn remainder<S: Simd>(simd: S, i: I<S>, n: i32) -> I<S> {
+    if n & (n - 1) == 0 {
+        return i & I::splat(simd, n - 1);
+    }
+    // The quotient may be one off, and more for coordinates of millions; the rest is brought in.
+    let quotient: I<S> = (i.to_float::<F<S>>() * F::splat(simd, 1.0 / n as f32)).floor().to_int();
+    let (zero, n) = (I::splat(simd, 0), I::splat(simd, n));
+    let rest = i - quotient * n;
+    let rest = rest.simd_lt(zero).select(rest + n, rest);
+    let rest = rest.simd_ge(n).select(rest - n, rest);
+    rest.max(zero).min(n - I::splat(simd, 1))
+}
+
+#[inline(always)]
+fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, x: F<S>, y: F<S>) -> Rgba<S> {
+    let half = F::splat(simd, 0.5);
+    let i = wrapped(simd, sampler.wrap_u, (x + half).floor().to_int(), level.width);
+    let j = wrapped(simd, sampler.wrap_v, (y + half).floor().to_int(), level.height);
+    let index = j * I::splat(simd, level.width as i32) + i;
+    match &level.texels {
+        Texels::Rgba8(texels) => crate::blend::unpack(simd, gather(simd, texels, index)),
+        Texels::Rgba32F(texels) => gather_float(simd, texels, index),
+    }
+}
+
+#[inline(always)]
+fn bilinear<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, x: F<S>, y: F<S>) -> Rgba<S> {
+    let (fx, fy) = (x.floor(), y.floor());
+    let (s, t) = (x - fx, y - fy);
+    let (i, j): (I<S>, I<S>) = (fx.to_int(), fy.to_int());
+    let one = I::splat(simd, 1);
+    let i0 = wrapped(simd, sampler.wrap_u, i, level.width);
+    let i1 = wrapped(simd, sampler.wrap_u, i + one, level.width);
+    let width = I::splat(simd, level.width as i32);
+    let row0 = wrapped(simd, sampler.wrap_v, j, level.height) * width;
+    let row1 = wrapped(simd, sampler.wrap_v, j + one, level.height) * width;
+    match &level.texels {
+        Texels::Rgba8(texels) => {
+            let side_by_side = i1.simd_eq(i0 + one);
+            let pairs = if side_by_side.all_true() {
+                [gather_pairs(simd, texels, row0 + i0), gather_pairs(simd, texels, row1 + i0)]
+            } else {
+                [
+                    [gather(simd, texels, row0 + i0), gather(simd, texels, row0 + i1)],
+                    [gather(simd, texels, row1 + i0), gather(simd, texels, row1 + i1)],
+                ]
+            };
+            mixed(simd, pairs, s, t)
+        }
+        Texels::Rgba32F(texels) => {
+            let upper = lerp(gather_float(simd, texels, row0 + i0), gather_float(simd, texels, row0 + i1), s);
+            let lower = lerp(gather_float(simd, texels, row1 + i0), gather_float(simd, texels, row1 + i1), s);
+            lerp(upper, lower, t)
+        }
+    }
+}
+
+/// Mean of four texels, weighted by the position `s`, `t` between them.
+#[inline(always)]
+fn mixed<S: Simd>(simd: S, [[t00, t10], [t01, t11]]: [[u32x16<S>; 2]; 2], s: F<S>, t: F<S>) -> Rgba<S> {
+    let (scale, half) = (F::splat(simd, 256.0), F::splat(simd, 0.5));
+    let s: I<S> = (s * scale + half).to_int();
+    let t: I<S> = (t * scale + half).to_int();
+    let w11 = (s * t + I::splat(simd, 128)) >> 8;
+    let weights = [I::splat(simd, 256) - s - t + w11, s - w11, t - w11, w11];
+    let texels = [t00, t10, t01, t11];
+    let mask = u32x16::splat(simd, 0x00ff_00ff);
+    // Two channels to a word: sums stay below 2^16 each.
+    let mut rb = u32x16::splat(simd, 0);
+    let mut ga = u32x16::splat(simd, 0);
+    for k in 0..4 {
+        let w: u32x16<S> = weights[k].bitcast();
+        rb += (texels[k] & mask) * w;
+        ga += ((texels[k] >> 8) & mask) * w;
+    }
+    [low(simd, rb), low(simd, ga), low(simd, rb >> 16), low(simd, ga >> 16)]
+}
+
+/// The lower half of a sum of [`mixed`], as a number 0 to 1.
+#[inline(always)]
+fn low<S: Simd>(simd: S, v: u32x16<S>) -> F<S> {
+    let int: I<S> = (v & u32x16::splat(simd, 0xffff)).bitcast();
+    int.to_float::<F<S>>() * F::splat(simd, 1.0 / (255.0 * 256.0))
+}
+
+#[inline(always)]
+fn gather<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> u32x16<S> {
+    let mut out = [0u32; LANES];
+    gather_words(texels, &index.to_array(), &mut out);
+    u32x16::load_array(simd, out)
+}
+
+/// The texels at `index` and at the next.
+#[inline(always)]
+fn gather_pairs<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> [u32x16<S>; 2] {
+    let mut out = [[[0u32; 2]; LANES / 2]; 2];
+    gather_word_pairs(texels, &index.to_array(), out.as_flattened_mut());
+    let a = u32x16::from_slice(simd, out[0].as_flattened());
+    let b = u32x16::from_slice(simd, out[1].as_flattened());
+    [a.unzip_low(b), a.unzip_high(b)]
+}
+
+// The loops below go through memory on purpose: inlined into vector code, every index is taken out of
+// its register and every texel put into one, lane by lane, at twice the cost.
+
+#[inline(never)]
+fn gather_words(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [u32; LANES]) {
+    for (to, &i) in out.iter_mut().zip(index) {
+        *to = u32::from_le_bytes(texels.get(i as u32 as usize).copied().unwrap_or_default());
+    }
+}
+
+#[inline(never)]
+fn gather_word_pairs(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [[u32; 2]]) {
+    for (to, &i) in out.iter_mut().zip(index) {
+        let i = i as u32 as usize;
+        if let Some(&[a, b]) = texels.get(i..i + 2) {
+            *to = [u32::from_le_bytes(a), u32::from_le_bytes(b)];
+        }
+    }
+}
+
+#[inline(always)]
+fn gather_float<S: Simd>(simd: S, texels: &[[f32; 4]], index: I<S>) -> Rgba<S> {
+    let mut out = [[0f32; LANES]; 4];
+    gather_planes(texels, &index.to_array(), &mut out);
+    [
+        F::load_array(simd, out[0]),
+        F::load_array(simd, out[1]),
+        F::load_array(simd, out[2]),
+        F::load_array(simd, out[3]),
+    ]
+}
+
+#[inline(never)]
+fn gather_planes(texels: &[[f32; 4]], index: &[i32; LANES], out: &mut [[f32; LANES]; 4]) {
+    for (k, &i) in index.iter().enumerate() {
+        let texel = texels.get(i as usize).copied().unwrap_or_default();
+        for (plane, v) in out.iter_mut().zip(texel) {
+            plane[k] = v;
+        }
+    }
+}

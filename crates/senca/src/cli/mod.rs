@@ -1,0 +1,16 @@
+//! What all subcommands share: values of options, output, progress, figures, and how to end.
+
+mod failure;
+pub(crate) mod input;
+mod interrupt;
+pub(crate) mod output;
+mod progress;
+mod stats;
+mod threads;
+pub(crate) mod values;
+
+pub(crate) use failure::Failure;
+pub(crate) use interrupt::Interrupt;
+pub(crate) use progress::Progress;
+pub(crate) use stats::{Seconds, Stats, Stopwatch, Triangles, peak_bytes};
+pub(crate) use threads::use_threads;

@@ -1,0 +1,44 @@
+//! The subcommands, one file each.
+
+mod bench;
+mod convert;
+mod info;
+mod render;
+mod view_matrix;
+
+use clap::{Parser, Subcommand};
+
+use crate::cli::Failure;
+
+/// Draws 3-D scenes and models without a GPU.
+#[derive(Debug, Parser)]
+#[command(name = "senca", version, propagate_version = true, max_term_width = 100)]
+pub(crate) struct Senca {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Draws a scene or a model into a picture
+    Render(Box<render::Arguments>),
+    /// Tells what is in a scene or a model
+    Info(info::Arguments),
+    /// Writes a model, or a picture, in another format
+    Convert(convert::Arguments),
+    /// Prints the partial matrices of a viewing operation and their product
+    ViewMatrix(view_matrix::Arguments),
+    /// Measures this program on data it makes itself
+    Bench(bench::Arguments),
+}
+
+/// Runs the subcommand.
+pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
+    match senca.command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Info(arguments) => info::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
+        Command::ViewMatrix(arguments) => view_matrix::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
+    }
+}

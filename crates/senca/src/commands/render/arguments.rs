@@ -1,0 +1,354 @@
+//! The options of `senca render`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum, ValueHint};
+use senca::io::toml_scene::{RenderHints, ShadingHint};
+use senca::math::glam::DVec3;
+use senca::pipeline::Shading;
+use senca::scene::Filter;
+use senca::{LookAt, Moment, Settings, Viewpoint, pipeline};
+
+use crate::cli::Failure;
+use crate::cli::values::{BackgroundChoice, Crop, Size, not_negative, positive, triple, view_angle};
+
+/// What is drawn and how.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// Scene or model, told by its content; - is standard input
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+    #[command(flatten)]
+    pub(crate) drawing: DrawingArguments,
+    #[command(flatten)]
+    pub(crate) view: ViewArguments,
+    #[command(flatten)]
+    pub(crate) running: RunningArguments,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  senca render teapot.toml
+  senca render bunny.obj -o bunny.png --size 1920x1080 --samples 8
+  senca render house.dat --shading hidden-line -o house.svg
+  senca render robot.glb --camera Front --time 1.5 -o - | display";
+
+/// Where the picture goes.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Picture")]
+pub(crate) struct OutputArguments {
+    /// Picture: .png .exr .pfm .ppm .jpg .bmp, or .svg for lines; - is standard output
+    /// [default: the scene's name with .png, in this folder]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Format, in place of the one the extension names: png, exr, pfm, ppm, jpg, bmp or svg
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<String>,
+
+    /// Width and height in pixels [default: what the camera's proportions leave of 1024x768]
+    #[arg(long, value_name = "WxH")]
+    pub(crate) size: Option<Size>,
+
+    /// Draws only this part of the picture, from its top left corner
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub(crate) crop: Option<Crop>,
+
+    /// Colour where nothing is: #rrggbb, linear R,G,B, white, black, or none for transparent
+    /// [default: the scene's]
+    #[arg(long, value_name = "COLOR")]
+    pub(crate) background: Option<BackgroundChoice>,
+}
+
+/// How surfaces are drawn.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Drawing")]
+pub(crate) struct DrawingArguments {
+    /// How the scene is drawn: raster [default: raster]
+    #[arg(long, value_name = "METHOD", value_parser = method, default_value = "raster", hide_default_value = true)]
+    pub(crate) method: Method,
+
+    /// How surfaces look [default: material]
+    #[arg(long, value_enum, value_name = "SHADING")]
+    pub(crate) shading: Option<ShadingChoice>,
+
+    /// Which rasterizer: the fast one, or the textbook's
+    #[arg(long, value_enum, value_name = "RASTER", default_value_t)]
+    pub(crate) raster: RasterChoice,
+
+    /// Samples per pixel against jagged edges [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub(crate) samples: Option<u32>,
+
+    /// Antialiasing: none, or super for 4 samples a pixel unless --samples says how many
+    #[arg(long, value_name = "AA", value_parser = antialiasing)]
+    pub(crate) aa: Option<Antialiasing>,
+
+    /// How texels become colours [default: as the scene says]
+    #[arg(long, value_enum, value_name = "FILTER")]
+    pub(crate) texture_filter: Option<FilterChoice>,
+
+    /// How far curved surfaces may be from their polygons, in pixels
+    #[arg(long, value_name = "PIXELS", value_parser = positive, default_value = "0.25")]
+    pub(crate) tolerance: f64,
+
+    /// Draws surfaces that are turned away, too
+    #[arg(long)]
+    pub(crate) no_cull: bool,
+}
+
+/// From where, and when.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "View")]
+pub(crate) struct ViewArguments {
+    /// Camera of the scene [default: its first; without one the whole scene is framed]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "up"])]
+    pub(crate) camera: Option<String>,
+
+    /// Place of the eye, in place of a camera of the scene
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub(crate) eye: Option<DVec3>,
+
+    /// Point looked at [default: the centre of the scene]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub(crate) target: Option<DVec3>,
+
+    /// Direction that is up in the picture [default: 0,1,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub(crate) up: Option<DVec3>,
+
+    /// Vertical angle of view, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = view_angle)]
+    pub(crate) fov: Option<f64>,
+
+    /// Moment of the animation, in seconds [default: the pose of the file]
+    #[arg(long, value_name = "SECONDS", value_parser = not_negative)]
+    pub(crate) time: Option<f64>,
+
+    /// Animation to run, by name [default: the first]
+    #[arg(long, value_name = "NAME", requires = "time")]
+    pub(crate) animation: Option<String>,
+}
+
+/// How the program runs.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Running")]
+pub(crate) struct RunningArguments {
+    /// Threads to draw with; the picture is the same with any number [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Seed of random numbers; the raster method draws none, so it changes nothing here
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// Writes times and counts as one JSON object; - is standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) stats: Option<PathBuf>,
+
+    /// No progress bar and no warnings
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// The ways of drawing that are built in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Method {
+    /// The standard pipeline.
+    Raster,
+}
+
+fn method(text: &str) -> Result<Method, String> {
+    match text {
+        "raster" => Ok(Method::Raster),
+        "trace" | "path" | "radiosity" => {
+            Err(format!("drawing by {text} is not built into this version; it has: raster"))
+        }
+        _ => Err("there is one method in this version: raster".to_owned()),
+    }
+}
+
+/// The ways against jagged edges that are built in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Antialiasing {
+    /// One sample in the middle of each pixel.
+    None,
+    /// Several samples a pixel.
+    Super,
+}
+
+fn antialiasing(text: &str) -> Result<Antialiasing, String> {
+    match text {
+        "none" => Ok(Antialiasing::None),
+        "super" => Ok(Antialiasing::Super),
+        "jitter" | "adaptive" => Err(format!(
+            "{text} belongs to methods that are not built into this version; it has: none, super"
+        )),
+        _ => Err("antialiasing is none or super".to_owned()),
+    }
+}
+
+/// How surfaces look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShadingChoice {
+    /// Edges only, hidden ones too
+    Wire,
+    /// Edges, and the normal of each vertex
+    WireNormals,
+    /// Edges that are not hidden
+    HiddenLine,
+    /// One colour per polygon
+    Flat,
+    /// Colours of vertices, interpolated
+    Gouraud,
+    /// Normals interpolated, light per pixel
+    Phong,
+    /// Light per pixel by the metallic-roughness model of glTF
+    Material,
+}
+
+/// The rasterizers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RasterChoice {
+    /// Tiles, several pixels at once, on all cores
+    #[default]
+    Tiled,
+    /// One scan line after the other
+    Scanline,
+}
+
+/// How texels become colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FilterChoice {
+    /// The nearest texel
+    Nearest,
+    /// The four texels around
+    Bilinear,
+    /// Mean over what the pixel covers
+    Footprint,
+    /// Bilinear in two levels of detail
+    #[value(alias = "mipmap")]
+    Trilinear,
+}
+
+/// Samples per pixel when antialiasing is asked for without a number.
+const SUPER_SAMPLES: u32 = 4;
+
+/// Most samples per pixel.
+const MOST_SAMPLES: u32 = 256;
+
+impl Arguments {
+    /// The library's settings for these options; `hints` are what the scene file says where they say
+    /// nothing, and `shading` is what the picture's format asks for.
+    pub(super) fn settings(
+        &self,
+        hints: &RenderHints,
+        shading: Option<Shading>,
+    ) -> Result<Settings, Failure> {
+        let hinted = self.view.viewpoint().or_else(|| hints.camera.clone().map(Viewpoint::Camera));
+        Ok(Settings {
+            size: self.output.size.map(|s| [s.width, s.height]).or(hints.size),
+            crop: self.output.crop.map(Into::into),
+            viewpoint: hinted.unwrap_or_default(),
+            yfov: self.view.fov.map(f64::to_radians),
+            moment: self.view.moment(hints.time),
+            drawing: pipeline::Settings {
+                shading: self.drawing.shading.map(Into::into).or(shading).unwrap_or_default(),
+                samples: self.drawing.samples_per_pixel(hints.samples)?,
+                background: self.output.background.map(Into::into),
+                ..self.drawing.settings()
+            },
+        })
+    }
+}
+
+/// The pipeline's name for what a scene file says.
+pub(super) fn shading_of_hint(hint: ShadingHint) -> Shading {
+    match hint {
+        ShadingHint::Wire => Shading::Wire,
+        ShadingHint::HiddenLine => Shading::HiddenLine,
+        ShadingHint::Flat => Shading::Flat,
+        ShadingHint::Gouraud => Shading::Gouraud,
+        ShadingHint::Phong => Shading::Phong,
+        ShadingHint::Material => Shading::Material,
+    }
+}
+
+impl ViewArguments {
+    fn viewpoint(&self) -> Option<Viewpoint> {
+        let Self { camera, eye, target, up, .. } = self;
+        match camera {
+            Some(name) => Some(Viewpoint::Camera(name.clone())),
+            None if eye.is_none() && target.is_none() && up.is_none() => None,
+            None => Some(Viewpoint::LookAt(LookAt { eye: *eye, target: *target, up: *up })),
+        }
+    }
+
+    fn moment(&self, hint: Option<f64>) -> Option<Moment> {
+        let seconds = self.time.or(hint)?;
+        Some(Moment { seconds, animation: self.animation.clone() })
+    }
+}
+
+impl DrawingArguments {
+    /// All but shading, samples and background.
+    fn settings(&self) -> pipeline::Settings {
+        let standard = pipeline::Settings::default();
+        pipeline::Settings {
+            raster: self.raster.into(),
+            cull: if self.no_cull { pipeline::Culling::Never } else { standard.cull },
+            tolerance_px: self.tolerance,
+            filter: self.texture_filter.map(Into::into),
+            ..standard
+        }
+    }
+
+    fn samples_per_pixel(&self, hint: Option<u32>) -> Result<u32, Failure> {
+        match (self.aa, self.samples) {
+            (Some(Antialiasing::None), Some(n)) if n > 1 => Err(Failure::usage(format!(
+                "--aa none draws one sample a pixel; leave out --samples {n} or --aa none"
+            ))),
+            (Some(Antialiasing::None), _) => Ok(1),
+            (Some(Antialiasing::Super), None) => Ok(SUPER_SAMPLES),
+            (_, samples) => Ok(samples.or(hint).unwrap_or(1).min(MOST_SAMPLES)),
+        }
+    }
+}
+
+impl From<ShadingChoice> for Shading {
+    fn from(choice: ShadingChoice) -> Self {
+        match choice {
+            ShadingChoice::Wire => Self::Wire,
+            ShadingChoice::WireNormals => Self::WireNormals,
+            ShadingChoice::HiddenLine => Self::HiddenLine,
+            ShadingChoice::Flat => Self::Flat,
+            ShadingChoice::Gouraud => Self::Gouraud,
+            ShadingChoice::Phong => Self::Phong,
+            ShadingChoice::Material => Self::Material,
+        }
+    }
+}
+
+impl From<RasterChoice> for pipeline::Raster {
+    fn from(choice: RasterChoice) -> Self {
+        match choice {
+            RasterChoice::Tiled => Self::Tiled,
+            RasterChoice::Scanline => Self::Scanline,
+        }
+    }
+}
+
+impl From<FilterChoice> for Filter {
+    fn from(choice: FilterChoice) -> Self {
+        match choice {
+            FilterChoice::Nearest => Self::Nearest,
+            FilterChoice::Bilinear => Self::Bilinear,
+            FilterChoice::Footprint => Self::Footprint,
+            FilterChoice::Trilinear => Self::Trilinear,
+        }
+    }
+}

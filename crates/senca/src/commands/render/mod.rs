@@ -1,0 +1,121 @@
+//! `senca render`: a scene or a model into a picture.
+
+mod arguments;
+mod picture;
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use senca::io::toml_scene::{MethodHint, SceneFile};
+use senca::pipeline::{Control, RenderError};
+use senca::{Error, Report, Scene};
+
+pub(crate) use arguments::Arguments;
+use arguments::shading_of_hint;
+use picture::Target;
+
+use crate::cli::input::read_scene_and_hints;
+use crate::cli::output::{self, tell};
+use crate::cli::{
+    Failure, Interrupt, Progress, Seconds, Stats, Stopwatch, Triangles, peak_bytes, use_threads,
+};
+
+/// Draws the scene and writes the picture.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut watch = Stopwatch::start();
+    let running = &arguments.running;
+    let target = Target::of(arguments)?;
+    check_crop(arguments)?;
+    running.stats.as_deref().map_or(Ok(()), output::check_writable)?;
+    use_threads(running.threads)?;
+    let interrupt = Interrupt::listen();
+    let SceneFile { scene, render: hints } = read_scene_and_hints(&arguments.scene)?;
+    let settings = arguments.settings(&hints, target.shading(hints.shading.map(shading_of_hint)))?;
+    if !running.quiet {
+        tell_warnings(&arguments.scene, &scene);
+        tell_method(&arguments.scene, hints.method);
+    }
+    let mut seconds = Seconds { load: watch.lap(), ..Seconds::default() };
+
+    let progress = Progress::new(running.quiet);
+    let report_progress = |done| progress.report(done);
+    let control = Control { progress: Some(&report_progress), cancel: Some(interrupt.flag()) };
+    let drawn = target.draw(Cow::Owned(scene), &settings, &control);
+    progress.finish();
+    let drawn = drawn.map_err(|error| failure(&arguments.scene, &error))?;
+    seconds.prepare = drawn.report.prepare_seconds + drawn.report.drawing.seconds.prepare;
+    seconds.render = (watch.lap() - seconds.prepare).max(0.0);
+
+    output::write(target.path(), &drawn.encode()?, &interrupt)?;
+    seconds.write = watch.lap();
+    seconds.total = watch.total();
+    match &running.stats {
+        Some(path) => write_stats(path, &stats(seconds, &drawn.report, drawn.size, &settings), &interrupt),
+        None => Ok(()),
+    }
+}
+
+/// Finds a cut-out that reaches beyond the picture before anything is read.
+fn check_crop(arguments: &Arguments) -> Result<(), Failure> {
+    match (arguments.output.crop, arguments.output.size) {
+        (Some(crop), Some(size)) if !crop.is_within(size) => Err(Failure::usage(format!(
+            "the cut-out reaches beyond the picture of {}x{} pixels",
+            size.width, size.height
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Says that the scene's own method is not there, where it is not.
+fn tell_method(path: &Path, method: Option<MethodHint>) {
+    let name = match method {
+        None | Some(MethodHint::Raster) => return,
+        Some(MethodHint::Trace) => "trace",
+        Some(MethodHint::Radiosity) => "radiosity",
+        Some(MethodHint::Path) => "path",
+    };
+    let path = path.display();
+    tell(&format!(
+        "senca: {path}: warning: the scene asks for method {name}, which is not built into this version; \
+         it is drawn by raster"
+    ));
+}
+
+/// Says what the reader found odd.
+fn tell_warnings(path: &Path, scene: &Scene) {
+    for warning in &scene.warnings {
+        tell(&format!("senca: {}: warning: {}", path.display(), warning.0));
+    }
+}
+
+/// How the command ends for an error of the library.
+fn failure(path: &Path, error: &Error) -> Failure {
+    match error {
+        Error::Render(RenderError::Cancelled) => Failure::Interrupted,
+        error if error.is_usage() => Failure::usage(error),
+        error => Failure::input(format!("{}: {error}", path.display())),
+    }
+}
+
+fn stats(seconds: Seconds, report: &Report, size: [u32; 2], settings: &senca::Settings) -> Stats {
+    let drawing = &report.drawing;
+    Stats {
+        seconds,
+        threads: rayon::current_num_threads(),
+        size,
+        triangles: Triangles {
+            given: drawing.triangles_in,
+            culled: drawing.triangles_culled,
+            clipped: drawing.triangles_clipped,
+            drawn: drawing.triangles_drawn,
+        },
+        samples: settings.drawing.samples,
+        peak_bytes: peak_bytes(),
+    }
+}
+
+fn write_stats(path: &Path, stats: &Stats, interrupt: &Interrupt) -> Result<(), Failure> {
+    let mut text = serde_json::to_string_pretty(stats).map_err(Failure::input)?;
+    text.push('\n');
+    output::write(path, text.as_bytes(), interrupt)
+}

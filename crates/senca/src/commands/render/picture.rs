@@ -1,0 +1,131 @@
+//! The picture that `senca render` makes: where it goes, and in which format.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use senca::io::images::{PictureFormat, PictureOptions, encode};
+use senca::pipeline::{Control, Shading};
+use senca::{Error, Image, Report, Scene, Settings, render_with};
+
+use super::Arguments;
+use crate::cli::Failure;
+use crate::cli::output::{check_writable, default_name, is_standard};
+
+/// Formats of pictures and drawings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    /// Pixels.
+    Pixels(PictureFormat),
+    /// Lines, as SVG.
+    Svg,
+}
+
+/// Where the picture goes, and in which format.
+#[derive(Clone, Debug)]
+pub(super) struct Target {
+    path: PathBuf,
+    format: Format,
+}
+
+/// A finished picture with what its drawing told.
+pub(super) struct Drawn {
+    content: Content,
+    pub(super) report: Report,
+    pub(super) size: [u32; 2],
+}
+
+enum Content {
+    Pixels(Image, PictureFormat),
+    Svg(String),
+}
+
+impl Target {
+    /// From the options, when they fit each other and the place can be written.
+    pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
+        let wish = &arguments.output;
+        let format = match (&wish.format, &wish.output) {
+            (Some(name), _) => format_named(name)?,
+            (None, Some(path)) if !is_standard(path) => format_of(path)?,
+            (None, _) => Format::Pixels(PictureFormat::Png),
+        };
+        let shows_faces = arguments.drawing.shading.is_some_and(|s| !Shading::from(s).is_lines());
+        if format == Format::Svg && shows_faces {
+            return Err(Failure::usage(
+                "svg holds line drawings only; take --shading wire, wire-normals or hidden-line, or write png",
+            ));
+        }
+        let path = wish.output.clone().unwrap_or_else(|| default_name(&arguments.scene, extension(format)));
+        check_writable(&path)?;
+        Ok(Self { path, format })
+    }
+
+    /// The shading where the options say nothing: the scene's, unless the format cannot hold it.
+    pub(super) fn shading(&self, hint: Option<Shading>) -> Option<Shading> {
+        match self.format {
+            Format::Svg => hint.filter(|s| s.is_lines()).or(Some(Shading::HiddenLine)),
+            Format::Pixels(_) => hint,
+        }
+    }
+
+    /// Where the picture goes.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Draws the scene for this target.
+    pub(super) fn draw(
+        &self,
+        scene: Cow<'_, Scene>,
+        settings: &Settings,
+        control: &Control<'_>,
+    ) -> Result<Drawn, Error> {
+        let (content, size, report) = match self.format {
+            Format::Pixels(format) => {
+                let (image, report) = render_with(scene, settings, control)?;
+                let size = [image.width(), image.height()];
+                (Content::Pixels(image, format), size, report)
+            }
+            Format::Svg => {
+                let (svg, size, report) = senca::render_svg(scene, settings, control)?;
+                (Content::Svg(svg), size, report)
+            }
+        };
+        Ok(Drawn { content, report, size })
+    }
+}
+
+impl Drawn {
+    /// The bytes of the file.
+    pub(super) fn encode(&self) -> Result<Cow<'_, [u8]>, Failure> {
+        match &self.content {
+            Content::Pixels(image, format) => Ok(encode(image, *format, &PictureOptions::default())?.into()),
+            Content::Svg(text) => Ok(text.as_bytes().into()),
+        }
+    }
+}
+
+fn extension(format: Format) -> &'static str {
+    match format {
+        Format::Pixels(format) => format.extension(),
+        Format::Svg => "svg",
+    }
+}
+
+fn format_named(name: &str) -> Result<Format, Failure> {
+    if name.eq_ignore_ascii_case("svg") {
+        return Ok(Format::Svg);
+    }
+    PictureFormat::from_extension(name).map(Format::Pixels).ok_or_else(|| unknown(&format!("\"{name}\"")))
+}
+
+fn format_of(path: &Path) -> Result<Format, Failure> {
+    let Some(extension) = path.extension() else {
+        return Err(unknown(&format!("{} has no extension, which", path.display())));
+    };
+    format_named(&extension.to_string_lossy())
+}
+
+fn unknown(what: &str) -> Failure {
+    let known: Vec<_> = PictureFormat::ALL.iter().map(|f| f.extension()).collect();
+    Failure::usage(format!("{what} names no picture format; there are: {}, svg", known.join(", ")))
+}

@@ -1,0 +1,57 @@
+//! What can go wrong between a scene and its picture.
+
+use senca_math::ViewError;
+use senca_pipeline::RenderError;
+
+/// Why [`render`](crate::render) gave no picture. Variants come in the order caller, input.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene has no camera of that name.
+    #[error("there is no camera \"{name}\"; {}", listed("camera", known))]
+    UnknownCamera {
+        /// What was asked for.
+        name: String,
+        /// The cameras there are.
+        known: Vec<String>,
+    },
+    /// The scene has no animation of that name.
+    #[error("there is no animation \"{name}\"; {}", listed("animation", known))]
+    UnknownAnimation {
+        /// What was asked for.
+        name: String,
+        /// The animations there are.
+        known: Vec<String>,
+    },
+    /// The camera gives no view.
+    #[error("the camera gives no view: {0}")]
+    View(#[from] ViewError),
+    /// The pipeline gave no picture.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+/// `the scene has: "a", "b"`, or that it has none.
+fn listed(what: &str, known: &[String]) -> String {
+    let quoted: Vec<_> = known.iter().map(|name| format!("\"{name}\"")).collect();
+    if quoted.is_empty() {
+        format!("the scene has no {what}")
+    } else {
+        format!("the scene has: {}", quoted.join(", "))
+    }
+}
+
+impl Error {
+    /// Whether the call was at fault, and not the scene.
+    #[must_use]
+    pub fn is_usage(&self) -> bool {
+        use RenderError::{Crop, EmptyImage, ImageTooLarge, Setting};
+        match self {
+            Self::UnknownCamera { .. } | Self::UnknownAnimation { .. } => true,
+            Self::View(_) => false,
+            Self::Render(error) => {
+                matches!(error, Crop { .. } | EmptyImage { .. } | ImageTooLarge { .. } | Setting { .. })
+            }
+        }
+    }
+}

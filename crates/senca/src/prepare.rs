@@ -1,0 +1,150 @@
+//! From a scene and a caller's wishes to what a renderer takes: a scene in its pose, with light, and
+//! a view.
+
+use std::borrow::Cow;
+
+use senca_math::glam::DVec3;
+use senca_math::{View, world_from_look_at};
+use senca_scene::{
+    AnimationId, Background, Camera, DEFAULT_YFOV, PlacedCamera, Projection, Scene, frame_bounds,
+};
+
+use crate::{Error, LookAt, Moment, Settings, Viewpoint};
+
+/// The box that pictures without a size fit into, in pixels.
+const DEFAULT_SIZE: [u32; 2] = [1024, 768];
+
+/// What a renderer takes.
+#[derive(Clone, Debug)]
+pub struct Prepared<'s> {
+    /// The scene in its pose, with light; borrowed when nothing had to be changed.
+    pub scene: Cow<'s, Scene>,
+    /// Where it is seen from.
+    pub view: View,
+    /// Width and height of the whole picture in pixels.
+    pub size: [u32; 2],
+}
+
+/// Brings the scene into its pose, finds the camera, and adds light where there is none. A scene that
+/// is given away is changed in place, a borrowed one is copied when it has to change.
+///
+/// # Errors
+/// [`Error::UnknownCamera`], [`Error::UnknownAnimation`], [`Error::View`].
+pub fn prepare<'s>(scene: Cow<'s, Scene>, settings: &Settings) -> Result<Prepared<'s>, Error> {
+    let mut scene = posed(scene, settings.moment.as_ref())?;
+    let found = camera_of_scene(&scene, &settings.viewpoint)?;
+    let size = settings.size.unwrap_or_else(|| default_size(found.as_ref()));
+    let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
+    let placed = match (found, &settings.viewpoint, settings.yfov) {
+        (Some(placed), _, yfov) => with_yfov(placed, yfov),
+        (None, Viewpoint::LookAt(wish), yfov) => camera_of_caller(&scene, wish, yfov, aspect)?,
+        (None, _, None) => scene.frame_all(aspect),
+        (None, _, yfov) => camera_of_caller(&scene, &LookAt::default(), yfov, aspect)?,
+    };
+    let view = placed.camera.view(&placed.world_from_camera, aspect, &scene.bounds())?;
+    if !scene.is_lit() {
+        scene.to_mut().light_by_default(&placed.world_from_camera);
+    }
+    Ok(Prepared { scene, view, size })
+}
+
+/// The scene at the moment asked for, or in the pose of its file; meshes bent as their nodes say.
+fn posed<'s>(scene: Cow<'s, Scene>, moment: Option<&Moment>) -> Result<Cow<'s, Scene>, Error> {
+    let (animation, seconds) = match moment {
+        Some(moment) => (animation_of(&scene, moment)?, moment.seconds),
+        None => (None, 0.0),
+    };
+    Ok(match scene {
+        Cow::Borrowed(scene) => scene.at_time(animation, seconds),
+        Cow::Owned(scene) => {
+            let changed = match scene.at_time(animation, seconds) {
+                Cow::Borrowed(_) => None,
+                Cow::Owned(posed) => Some(posed),
+            };
+            Cow::Owned(changed.unwrap_or(scene))
+        }
+    })
+}
+
+/// The animation that the moment names, or the first.
+fn animation_of(scene: &Scene, moment: &Moment) -> Result<Option<AnimationId>, Error> {
+    let Some(name) = &moment.animation else {
+        return Ok((!scene.animations.is_empty()).then_some(AnimationId(0)));
+    };
+    let found = scene.animations.iter().position(|a| a.name == *name);
+    let unknown = || Error::UnknownAnimation {
+        name: name.clone(),
+        known: scene.animations.iter().map(|a| a.name.clone()).collect(),
+    };
+    found.map(|i| Some(AnimationId(i as u32))).ok_or_else(unknown)
+}
+
+/// The camera that the viewpoint names; `None` when the scene has none or the caller has another.
+fn camera_of_scene(scene: &Scene, viewpoint: &Viewpoint) -> Result<Option<PlacedCamera>, Error> {
+    let cameras = scene.placed_cameras();
+    let found = match viewpoint {
+        Viewpoint::LookAt(_) => return Ok(None),
+        Viewpoint::First => cameras.first(),
+        Viewpoint::Camera(name) => {
+            let named =
+                |c: &&senca_scene::SceneCamera| c.name == *name || scene.nodes[c.node.index()].name == *name;
+            let unknown = || Error::UnknownCamera {
+                name: name.clone(),
+                known: cameras.iter().map(|c| c.name.clone()).collect(),
+            };
+            Some(cameras.iter().find(named).ok_or_else(unknown)?)
+        }
+    };
+    Ok(found.map(|found| PlacedCamera {
+        camera: scene.cameras[found.camera.index()].clone(),
+        world_from_camera: found.world_from_camera,
+    }))
+}
+
+/// The camera with another angle of view, if it is a perspective one.
+fn with_yfov(mut placed: PlacedCamera, wish: Option<f64>) -> PlacedCamera {
+    if let (Projection::Perspective { yfov, .. }, Some(wish)) = (&mut placed.camera.projection, wish) {
+        *yfov = wish;
+    }
+    placed
+}
+
+/// The largest size of the camera's own proportions within [`DEFAULT_SIZE`].
+fn default_size(placed: Option<&PlacedCamera>) -> [u32; 2] {
+    let [width, height] = DEFAULT_SIZE;
+    let Some(aspect) = placed.and_then(|p| p.camera.natural_aspect()) else { return DEFAULT_SIZE };
+    let wide = (f64::from(width) / aspect).round().max(1.0);
+    let high = (f64::from(height) * aspect).round().max(1.0);
+    if wide <= f64::from(height) { [width, wide as u32] } else { [high as u32, height] }
+}
+
+/// A camera as the caller wishes it; what is left open is chosen so that the scene is seen whole.
+fn camera_of_caller(
+    scene: &Scene,
+    wish: &LookAt,
+    yfov: Option<f64>,
+    aspect: f64,
+) -> Result<PlacedCamera, Error> {
+    let bounds = scene.bounds();
+    let target = wish.target.unwrap_or_else(|| bounds.center());
+    let yfov = yfov.unwrap_or(DEFAULT_YFOV);
+    let up = wish.up.unwrap_or(DVec3::Y);
+    let eye = wish.eye.unwrap_or_else(|| {
+        let framed = frame_bounds(&bounds, aspect).world_from_camera.w_axis.truncate() - bounds.center();
+        let nearer = (0.5 * DEFAULT_YFOV).tan() / (0.5 * yfov).tan();
+        target + framed * nearer
+    });
+    let world_from_camera = world_from_look_at(eye, target, up)?;
+    let projection = Projection::Perspective { yfov, aspect: None, near: None, far: None };
+    Ok(PlacedCamera { camera: Camera { name: String::new(), projection }, world_from_camera })
+}
+
+/// What is seen behind a scene that says nothing: a quiet grey that grows lighter towards the top,
+/// or white paper behind lines.
+pub(crate) fn default_background(lines: bool) -> Background {
+    use senca_math::LinearRgb;
+    if lines {
+        return Background::Color(LinearRgb::WHITE);
+    }
+    Background::Gradient { bottom: LinearRgb::new(0.33, 0.35, 0.38), top: LinearRgb::new(0.72, 0.76, 0.82) }
+}

@@ -1,0 +1,352 @@
+//! The command as its users script it: exit statuses, messages, figures, files.
+
+mod common;
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Output, Stdio};
+
+use common::{run_in, senca_in, told};
+use serde_json::Value;
+
+const CUBE_OBJ: &str = "\
+o cube
+v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1
+v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
+f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8
+";
+
+/// A new folder with a cube in it.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("cube.obj"), CUBE_OBJ).expect("a file");
+    folder
+}
+
+/// Names of the files in `folder`, sorted.
+fn files_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<_> =
+        entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[track_caller]
+fn assert_exit(output: &Output, status: i32, part: &str) {
+    let message = told(output);
+    assert_eq!(output.status.code(), Some(status), "{message}");
+    assert!(message.contains(part), "\"{part}\" is not in: {message}");
+}
+
+fn size_of_png(bytes: &[u8]) -> (u32, u32) {
+    assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
+    let number = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes"));
+    (number(16), number(20))
+}
+
+fn json(bytes: &[u8]) -> Value {
+    serde_json::from_slice(bytes).unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(bytes)))
+}
+
+#[test]
+fn a_model_gives_a_picture_named_after_it() {
+    let folder = folder();
+    let done = run_in(folder.path(), &["render", "cube.obj", "--size", "60x40"]);
+    assert_exit(&done, 0, "");
+    let png = std::fs::read(folder.path().join("cube.png")).expect("a picture");
+    assert_eq!(size_of_png(&png), (60, 40));
+    assert!(done.stdout.is_empty() && done.stderr.is_empty(), "{}", told(&done));
+}
+
+#[test]
+fn every_picture_format_is_written_and_told_by_its_extension() {
+    let folder = folder();
+    for (name, start) in [
+        ("a.png", &b"\x89PNG"[..]),
+        ("a.exr", b"\x76\x2f\x31\x01"),
+        ("a.pfm", b"PF\n"),
+        ("a.ppm", b"P6\n"),
+        ("a.jpg", b"\xff\xd8\xff"),
+        ("a.BMP", b"BM"),
+    ] {
+        let done = run_in(folder.path(), &["render", "cube.obj", "-o", name, "--size", "16x9"]);
+        assert_exit(&done, 0, "");
+        let bytes = std::fs::read(folder.path().join(name)).expect("a picture");
+        assert!(bytes.starts_with(start), "{name} begins with {:?}", &bytes[..8]);
+    }
+}
+
+#[test]
+fn line_drawings_are_written_as_svg_and_others_are_not() {
+    let folder = folder();
+    for shading in ["wire", "hidden-line"] {
+        let arguments = ["render", "cube.obj", "-o", "a.svg", "--shading", shading];
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        let text = std::fs::read_to_string(folder.path().join("a.svg")).expect("a drawing");
+        assert!(text.contains("<svg") && text.trim_end().ends_with("</svg>"), "{text}");
+    }
+    let done = run_in(folder.path(), &["render", "cube.obj", "-o", "b.svg", "--shading", "phong"]);
+    assert_exit(&done, 2, "svg");
+    assert_eq!(files_in(folder.path()), ["a.svg", "cube.obj"]);
+}
+
+#[test]
+fn bad_usage_exits_with_2_and_says_what_would_be_right() {
+    let folder = folder();
+    for (arguments, part) in [
+        (&["render"][..], "SCENE"),
+        (&["render", "cube.obj", "--size", "0x5"], "width is 0"),
+        (&["render", "cube.obj", "--size", "5"], "WxH"),
+        (&["render", "cube.obj", "--size", "100000x5"], "at most"),
+        (&["render", "cube.obj", "--method", "trace"], "not built into this version"),
+        (&["render", "cube.obj", "--method", "radiosity"], "not built into this version"),
+        (&["render", "cube.obj", "--aa", "adaptive"], "not built into this version"),
+        (&["render", "cube.obj", "--shading", "pink"], "gouraud"),
+        (&["render", "cube.obj", "-o", "a.gif"], "png"),
+        (&["render", "cube.obj", "-o", "a"], "png"),
+        (&["render", "cube.obj", "--crop", "0,0,2000,10"], "1024"),
+        (&["render", "cube.obj", "--samples", "0"], "1..="),
+        (&["render", "cube.obj", "--threads", "0"], "1..="),
+        (&["render", "cube.obj", "--eye", "1,2"], "X,Y,Z"),
+        (&["render", "cube.obj", "--fov", "180"], "between 0 and 180"),
+        (&["render", "cube.obj", "--aa", "none", "--samples", "4"], "--aa none"),
+        (&["convert", "cube.obj", "a.xyz"], "obj"),
+        (&["bench", "nonsense"], "fill"),
+        (&["paint"], "unrecognized subcommand"),
+    ] {
+        assert_exit(&run_in(folder.path(), arguments), 2, part);
+    }
+    assert_eq!(files_in(folder.path()), ["cube.obj"]);
+}
+
+#[test]
+fn help_lists_only_what_is_built_in() {
+    let folder = folder();
+    let help = run_in(folder.path(), &["render", "--help"]);
+    let text = String::from_utf8_lossy(&help.stdout).into_owned();
+    assert!(text.contains("hidden-line") && text.contains("--crop"));
+    for absent in ["trace", "radiosity", "adaptive", "--accel"] {
+        assert!(!text.contains(absent), "help speaks of {absent}");
+    }
+}
+
+#[test]
+fn bad_input_exits_with_1_and_leaves_no_file() {
+    let folder = folder();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("a file");
+    write("empty.obj", b"");
+    write("noise.bin", &[0xfe, 0x01, 0x00, 0x80, 0x7f, 0x33, 0x10, 0x00]);
+    write("cut.glb", b"glTF\x02\x00\x00\x00\xff\xff\x00\x00");
+    write("cut.stl", &[&[0u8; 80][..], &[255, 255, 255, 255, 1, 2]].concat());
+    write("cut.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n1\n");
+    write("range.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 3\n");
+    std::fs::create_dir(folder.path().join("folder.obj")).expect("a folder");
+    for (name, part) in [
+        ("missing.obj", "missing.obj"),
+        ("empty.obj", "empty"),
+        ("folder.obj", "folder"),
+        ("noise.bin", "noise.bin"),
+        ("cut.glb", "cut.glb"),
+        ("cut.stl", "cut.stl"),
+        ("cut.ply", "cut.ply:"),
+    ] {
+        let done = run_in(folder.path(), &["render", name, "-o", "out.png", "--size", "8x8"]);
+        assert_exit(&done, 1, part);
+        let message = told(&done);
+        assert!(message.starts_with("senca: ") && message.trim_end().lines().count() == 1, "{message}");
+    }
+    assert!(!folder.path().join("out.png").exists());
+}
+
+#[test]
+fn mistakes_in_scenes_are_told_with_line_and_column() {
+    let folder = folder();
+    std::fs::write(folder.path().join("a.toml"), "[[node]]\nname = \"n\"\ncolour = 3\n").expect("a file");
+    let done = run_in(folder.path(), &["render", "a.toml", "--size", "8x8"]);
+    assert_exit(&done, 1, "senca: a.toml:");
+    let place: Vec<_> = told(&done).split(':').skip(2).take(2).map(str::to_owned).collect();
+    assert!(place.iter().all(|n| n.parse::<u32>().is_ok_and(|n| n > 0)), "{}", told(&done));
+}
+
+#[test]
+fn places_that_cannot_be_written_are_found_before_drawing() {
+    let folder = folder();
+    for out in ["no/such/a.png", "cube.obj/a.png"] {
+        // The scene is missing too, but the place is looked at first.
+        let done = run_in(folder.path(), &["render", "missing.obj", "-o", out]);
+        assert_exit(&done, 1, "there is no folder");
+    }
+    std::fs::create_dir(folder.path().join("a.png")).expect("a folder");
+    assert_exit(&run_in(folder.path(), &["render", "cube.obj", "-o", "a.png"]), 1, "is a folder");
+    let stats = ["render", "cube.obj", "--stats", "no/such/a.json"];
+    assert_exit(&run_in(folder.path(), &stats), 1, "there is no folder");
+    #[cfg(target_os = "linux")]
+    assert_exit(&run_in(folder.path(), &["render", "cube.obj", "-o", "/proc/a.png"]), 1, "cannot write");
+}
+
+#[test]
+fn the_smallest_picture_has_one_pixel() {
+    let folder = folder();
+    for raster in ["tiled", "scanline"] {
+        let arguments = ["render", "cube.obj", "-o", "a.png", "--size", "1x1", "--raster", raster];
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        let png = std::fs::read(folder.path().join("a.png")).expect("a picture");
+        assert_eq!(size_of_png(&png), (1, 1));
+    }
+}
+
+#[test]
+fn an_unknown_camera_or_animation_is_told_with_those_there_are() {
+    let folder = folder();
+    let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+        "nodes":[{"camera":0,"translation":[0,0,5]},{"camera":1}],
+        "cameras":[{"name":"Front","type":"perspective","perspective":{"yfov":0.7,"znear":0.1}},
+                   {"name":"Top","type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}]}"#;
+    std::fs::write(folder.path().join("a.gltf"), gltf).expect("a file");
+    let done = run_in(folder.path(), &["render", "a.gltf", "--camera", "Side"]);
+    assert_exit(&done, 2, "Side");
+    assert!(told(&done).contains("Front") && told(&done).contains("Top"), "{}", told(&done));
+    let done = run_in(folder.path(), &["render", "cube.obj", "--camera", "Side"]);
+    assert_exit(&done, 2, "no camera");
+    let done = run_in(folder.path(), &["render", "cube.obj", "--time", "1", "--animation", "walk"]);
+    assert_exit(&done, 2, "no animation");
+}
+
+#[test]
+fn standard_input_and_output_are_dashes() {
+    let folder = folder();
+    let mut command = senca_in(folder.path(), &["render", "-", "-o", "-", "--size", "20x10"]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the command starts");
+    child.stdin.take().expect("a pipe").write_all(CUBE_OBJ.as_bytes()).expect("the command reads");
+    let done = child.wait_with_output().expect("the command ends");
+    assert_exit(&done, 0, "");
+    assert_eq!(size_of_png(&done.stdout), (20, 10));
+    assert_eq!(files_in(folder.path()), ["cube.obj"]);
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = folder();
+    let mut command = senca_in(folder.path(), &["render", "cube.obj", "-o", "-", "--size", "900x900"]);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the command starts");
+    drop(child.stdout.take());
+    let done = child.wait_with_output().expect("the command ends");
+    assert_exit(&done, 0, "");
+    assert_eq!(told(&done), "");
+}
+
+#[test]
+fn figures_have_the_documented_keys() {
+    let folder = folder();
+    let arguments = ["render", "cube.obj", "--size", "40x30", "--stats", "s.json", "--threads", "1"];
+    assert_exit(&run_in(folder.path(), &arguments), 0, "");
+    let stats = json(&std::fs::read(folder.path().join("s.json")).expect("figures"));
+    let seconds = &stats["seconds"];
+    let of = |key: &str| seconds[key].as_f64().unwrap_or_else(|| panic!("seconds.{key} in {stats}"));
+    let sum: f64 = ["load", "prepare", "render", "write"].map(of).iter().sum();
+    assert!(of("total") >= 0.999 * sum && ["load", "render"].map(of).iter().all(|&s| s >= 0.0), "{stats}");
+    assert_eq!(stats["threads"], 1);
+    assert_eq!(stats["size"], serde_json::json!([40, 30]));
+    assert_eq!(stats["triangles"]["in"], 12);
+    for key in ["culled", "clipped", "drawn"] {
+        assert!(stats["triangles"][key].is_u64(), "{stats}");
+    }
+    #[cfg(target_os = "linux")]
+    assert!(stats["peak_bytes"].as_u64().is_some_and(|b| b > 100_000), "{stats}");
+}
+
+#[test]
+fn the_picture_does_not_depend_on_threads() {
+    let folder = folder();
+    let render = |threads: &str, name: &str| {
+        let arguments = ["render", "cube.obj", "-o", name, "--size", "333x217", "--threads", threads];
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        std::fs::read(folder.path().join(name)).expect("a picture")
+    };
+    let one = render("1", "one.png");
+    assert!(["2", "3", "8"].iter().all(|threads| render(threads, "many.png") == one));
+    let exact = render("1", "one.exr");
+    assert!(["2", "5"].iter().all(|threads| render(threads, "many.exr") == exact));
+}
+
+#[test]
+fn a_cut_out_is_that_part_of_the_whole_picture() {
+    let folder = folder();
+    let render = |more: &[&str], name: &str| {
+        let arguments = [&["render", "cube.obj", "--size", "80x60", "-o", name][..], more].concat();
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        std::fs::read(folder.path().join(name)).expect("a picture")
+    };
+    let whole = render(&[], "whole.pfm");
+    let part = render(&["--crop", "30,20,25,13"], "part.pfm");
+    let header = |width: usize, height: usize| format!("PF\n{width} {height}\n-1.0\n").len();
+    let (whole, part) = (&whole[whole.len() - 80 * 60 * 12..], &part[part.len() - 25 * 13 * 12..]);
+    assert!(header(80, 60) > 0);
+    // Rows of a PFM run from the bottom.
+    for row in 0..13 {
+        let whole_row = 60 - 1 - (20 + 12 - row);
+        let expected = &whole[(whole_row * 80 + 30) * 12..][..25 * 12];
+        assert_eq!(&part[row * 25 * 12..][..25 * 12], expected, "row {row} from the bottom");
+    }
+}
+
+#[test]
+fn info_tells_what_is_there() {
+    let folder = folder();
+    let done = run_in(folder.path(), &["info", "cube.obj", "--json"]);
+    assert_exit(&done, 0, "");
+    let info = json(&done.stdout);
+    for (key, value) in [("meshes", 1), ("instances", 1), ("triangles", 12), ("vertices", 8)] {
+        assert_eq!(info[key], value, "{key} in {info}");
+    }
+    assert_eq!(info["bounds"], serde_json::json!([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]));
+    assert_eq!(info["cameras"], serde_json::json!([]));
+    assert_eq!(info["closed"], true);
+    for key in ["materials", "textures", "lights", "animations", "warnings"] {
+        assert!(!info[key].is_null(), "{key} in {info}");
+    }
+    let done = run_in(folder.path(), &["info", "cube.obj"]);
+    assert!(String::from_utf8_lossy(&done.stdout).contains("triangles"), "{done:?}");
+    assert_exit(&run_in(folder.path(), &["info", "missing.obj"]), 1, "missing.obj");
+}
+
+#[test]
+fn models_survive_conversion_between_all_formats() {
+    let folder = folder();
+    for name in ["a.obj", "a.stl", "a.ply", "a.glb", "a.dat"] {
+        assert_exit(&run_in(folder.path(), &["convert", "cube.obj", name]), 0, "");
+        for back in ["b.obj", "b.stl", "b.ply", "b.glb"] {
+            assert_exit(&run_in(folder.path(), &["convert", name, back]), 0, "");
+            let info = json(&run_in(folder.path(), &["info", back, "--json"]).stdout);
+            assert_eq!(info["triangles"], 12, "{name} to {back}: {info}");
+            assert_eq!(info["bounds"], serde_json::json!([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]));
+        }
+    }
+}
+
+#[test]
+fn benchmarks_print_a_table() {
+    let folder = folder();
+    let done = run_in(folder.path(), &["bench", "fill", "--seconds", "0.001"]);
+    assert_exit(&done, 0, "");
+    assert!(String::from_utf8_lossy(&done.stdout).contains("fill"), "{done:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_long_drawing_and_leaves_nothing() {
+    let folder = folder();
+    let arguments = ["render", "cube.obj", "-o", "big.png", "--size", "12000x12000", "--samples", "64"];
+    let mut command = senca_in(folder.path(), &arguments);
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the command starts");
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.expect("kill runs").success(), "the drawing was over too soon");
+    let done = child.wait_with_output().expect("the command ends");
+    assert_exit(&done, 130, "");
+    assert_eq!(files_in(folder.path()), ["cube.obj"]);
+}
