@@ -8,6 +8,7 @@
 pub mod classic;
 mod error;
 mod files;
+mod flatten;
 pub mod gltf;
 pub mod images;
 mod mtl;

@@ -13,6 +13,9 @@ mod material;
 mod pictures;
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub(crate) use write::{unique_names, write};
 
 use std::collections::HashMap;
 

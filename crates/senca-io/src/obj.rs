@@ -21,6 +21,9 @@ mod build;
 mod parse;
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub use write::{ObjOutput, write};
 
 use senca_scene::Scene;
 

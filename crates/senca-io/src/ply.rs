@@ -14,6 +14,9 @@ mod header;
 mod mesh;
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub use write::{PlyEncoding, write};
 
 use senca_scene::{Scene, Shape, Warning};
 

@@ -10,6 +10,9 @@
 
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub use write::{StlEncoding, write};
 
 use senca_scene::math::Srgb8;
 use senca_scene::math::glam::{Vec3, Vec4};

@@ -569,3 +569,49 @@ fn compare<S: Simd>(simd: S, test: Compare, new: f32x16<S>, stored: f32x16<S>) -
         Compare::Always => mask32x16::splat(simd, true),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bin::TILE;
+    use crate::setup::GUARD;
+
+    /// The edge function at the centre of a pixel, exactly, less one where the edge does not own it.
+    fn exact(v: &[ScreenVertex; 3], k: usize, [x, y]: [i64; 2]) -> i64 {
+        let (a, b) = (&v[k], &v[(k + 1) % 3]);
+        let (ex, ey) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
+        let (cx, cy) = (x * i64::from(SUB) + i64::from(HALF), y * i64::from(SUB) + i64::from(HALF));
+        let owns = ey < 0 || (ey == 0 && ex > 0);
+        ex * (cy - i64::from(a.y)) - ey * (cx - i64::from(a.x)) - i64::from(!owns)
+    }
+
+    #[test]
+    fn edge_value_fits() {
+        // Corners at the very ends of the guard band, tiles all over it.
+        let g = GUARD as i32;
+        let ends = [-g, -g + 1, -77, 0, 1, 129, g - 1, g];
+        let area = Bounds { x0: 0, y0: 0, x1: TILE as i32, y1: TILE as i32 };
+        let mut seen = 0;
+        for n in 0..8usize.pow(3) {
+            let at = |k: u32| ends[n / 8usize.pow(k) % 8];
+            let corner = |x: i32, y: i32| ScreenVertex { x, y, z: 0.5, inv_w: 1.0 };
+            let v = [corner(at(0), at(1)), corner(at(1), at(2)), corner(at(2), -at(0))];
+            let v = if crate::setup::double_area(&v) < 0 { [v[0], v[2], v[1]] } else { v };
+            for tile in [[-32_704, -32_704], [-64, 0], [0, 0], [32_640, -64], [64, 32_640]] {
+                let Some(edges) = TileEdges::new(&v, tile, &area) else {
+                    continue;
+                };
+                for (k, x, y) in [(0, 0, 0), (1, 63, 0), (2, 0, 63), (0, 63, 63), (1, 31, 7), (2, 63, 63)] {
+                    let value = i64::from(edges.c[k])
+                        + i64::from(edges.dx[k]) * i64::from(x)
+                        + i64::from(edges.dy[k]) * i64::from(y);
+                    assert!(i32::try_from(value).is_ok(), "{v:?} {tile:?}");
+                    let exact = exact(&v, k, [i64::from(tile[0] + x), i64::from(tile[1] + y)]);
+                    assert_eq!(value >= 0, exact >= 0, "{v:?} {tile:?} edge {k} at {x}, {y}");
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 1000);
+    }
+}

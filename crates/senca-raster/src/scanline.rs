@@ -280,3 +280,64 @@ pub fn book_spans(corners: [[f64; 3]; 3]) -> Vec<BookSpan> {
     };
     (p[0][1].ceil() as i32..=p[2][1].floor() as i32).map(span).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_the_worked_triangle() {
+        // P1 = (2,1), P2 = (8,3), P3 = (4,9), values 0, 1, 0.5.
+        let spans = book_spans([[2.0, 1.0, 0.0], [8.0, 3.0, 1.0], [4.0, 9.0, 0.5]]);
+        let expected = [
+            (1, 2.0, 2.0),
+            (2, 2.25, 5.0),
+            (3, 2.5, 8.0),
+            (4, 2.75, 7.333_333),
+            (5, 3.0, 6.666_667),
+            (6, 3.25, 6.0),
+            (7, 3.5, 5.333_333),
+            (8, 3.75, 4.666_667),
+            (9, 4.0, 4.0),
+        ];
+        assert_eq!(spans.len(), expected.len());
+        for (span, (y, long, short)) in spans.iter().zip(expected) {
+            assert_eq!(span.y, y);
+            assert!((span.x_long - long).abs() < 1e-6 && (span.x_short - short).abs() < 1e-6, "{span:?}");
+        }
+        // Halves round away from zero: rows 3 and 7 begin at 2.5 and 3.5.
+        assert_eq!([spans[2].columns(), spans[6].columns()], [[3, 8], [4, 5]]);
+        let values = [0.340_909, 0.363_636, 0.386_364, 0.409_091, 0.431_818, 0.454_545, 0.477_273];
+        for (span, expected) in spans[1..8].iter().zip(values) {
+            assert!((span.value_at(4.0) - expected).abs() < 1e-6, "{span:?}");
+        }
+    }
+
+    #[test]
+    fn flat_tops_and_points_have_their_rows() {
+        let flat = book_spans([[1.0, 2.0, 0.0], [5.0, 2.0, 1.0], [3.0, 4.0, 0.5]]);
+        assert_eq!(flat.iter().map(BookSpan::columns).collect::<Vec<_>>(), [[1, 5], [2, 4], [3, 3]]);
+        assert_eq!(flat[0].value_at(3.0), 0.5);
+        let point = book_spans([[3.0, 3.0, 0.7]; 3]);
+        assert_eq!((point.len(), point[0].columns(), point[0].value_at(3.0)), (1, [3, 3], 0.7));
+        assert!(book_spans([[0.0, 0.3, 0.0], [1.0, 0.4, 0.0], [2.0, 0.6, 0.0]]).is_empty());
+    }
+
+    #[test]
+    fn an_edge_walked_by_steps_is_the_edge_divided_each_time() {
+        let corner = |x: i32, y: i32| ScreenVertex { x, y, z: 0.0, inv_w: 1.0 };
+        for (top, bottom) in [
+            (corner(-700, -3000), corner(12_345, 8000)),
+            (corner(9000, 17), corner(-40_000, 5001)),
+            (corner(5, -100), corner(5, 9000)),
+            (corner(-8_000_000, -8_000_000), corner(8_000_000, 8_000_000)),
+        ] {
+            let first = first_row(top.y);
+            let mut walked = Edge::new(&top, &bottom, first);
+            for row in first..first_row(bottom.y).min(first + 500) {
+                assert_eq!(walked.column, Edge::new(&top, &bottom, row).column, "row {row}");
+                walked.advance();
+            }
+        }
+    }
+}

@@ -312,3 +312,77 @@ fn bias_of(z: &Plane, state: &SetupState) -> f32 {
 pub(crate) fn ceil_div(a: i64, b: i64) -> i64 {
     -(-a).div_euclid(b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Clip space of the course text's simple camera, section 8.6 of its examples worked out: eye at
+    /// z = 5, front plane z = 1, back plane z = -5; depth 0 in front.
+    fn clip_from_world([x, y, z]: [f32; 3]) -> Vec4 {
+        Vec4::new(x / 2.0, y / 2.0, (1.0 - z) / 6.0, (5.0 - z) / 10.0)
+    }
+
+    fn at_scene_point(state: &State) -> (f32, [f32; 3]) {
+        let map = ScreenMap::new(4000, 4000, state);
+        let corners = [[-0.5, -0.5, 0.0], [1.0, -0.3, -4.0], [0.0, 0.8, -2.0]].map(clip_from_world);
+        let screen = corners.map(|c| map.project(c));
+        let setup = Setup::new(screen, double_area(&screen), &SetupState::new(state));
+        let point = corners[0] * 0.2 + corners[1] * 0.5 + corners[2] * 0.3;
+        let pixel = |ndc: f32, k: usize| {
+            let fixed = ndc * map.scale[k] + map.offset[k];
+            (fixed - (setup.reference[k] * SUB + HALF) as f32) / SUB as f32
+        };
+        let (fx, fy) = (pixel(point.x / point.w, 0), pixel(point.y / point.w, 1));
+        let [b1, b2, _] = setup.weights(fx, fy);
+        let weights = [1.0 - b1 - b2, b1, b2];
+        (setup.depth(fx, fy), if setup.swapped { [weights[0], weights[2], weights[1]] } else { weights })
+    }
+
+    #[test]
+    fn depth_is_exact_in_the_image_and_colour_is_not() {
+        let near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4);
+        let (depth, weights) =
+            at_scene_point(&State { interpolation: Interpolation::Screen, ..State::default() });
+        assert!((depth - 0.789_474).abs() < 1e-5, "{depth}");
+        assert!(near(weights, [0.131_579, 0.592_105, 0.276_316]), "{weights:?}");
+        let (depth, weights) = at_scene_point(&State::default());
+        assert!((depth - 0.789_474).abs() < 1e-5, "{depth}");
+        assert!(near(weights, [0.2, 0.5, 0.3]), "{weights:?}");
+    }
+
+    #[test]
+    fn corners_of_the_volume_land_on_corners_of_the_viewport() {
+        let view = Viewport { x: 10.0, y: 20.0, width: 100.0, height: 40.0 };
+        let map = ScreenMap::new(640, 480, &State { viewport: Some(view), ..State::default() });
+        let pixel = |p: Vec4| {
+            let v = map.project(p);
+            [v.x / SUB + map.origin[0], v.y / SUB + map.origin[1]]
+        };
+        assert_eq!(pixel(Vec4::new(-1.0, 1.0, 0.0, 1.0)), [10, 20]);
+        assert_eq!(pixel(Vec4::new(2.0, -2.0, 1.0, 2.0)), [110, 60]);
+        assert_eq!(map.bounds, Bounds { x0: 10, y0: 20, x1: 110, y1: 60 });
+    }
+
+    #[test]
+    fn what_does_not_project_is_marked() {
+        let map = ScreenMap::new(64, 64, &State::default());
+        for p in [
+            Vec4::new(0.0, 0.0, -0.1, 1.0),
+            Vec4::new(0.0, 0.0, 1.1, 1.0),
+            Vec4::new(0.0, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, -1.0, -1.0),
+            Vec4::new(1e9, 0.0, 0.5, 1.0),
+            Vec4::new(f32::NAN, 0.0, 0.5, 1.0),
+            Vec4::new(0.0, f32::INFINITY, 0.5, 1.0),
+        ] {
+            assert_eq!(map.project(p).x, UNPROJECTED, "{p}");
+        }
+    }
+
+    #[test]
+    fn division_rounds_up() {
+        let found = [(7, 2), (-7, 2), (8, 2), (-8, 2), (0, 5), (1, 5), (-1, 5)].map(|(a, b)| ceil_div(a, b));
+        assert_eq!(found, [4, -3, 4, -4, 0, 1, 0]);
+    }
+}

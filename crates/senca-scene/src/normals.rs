@@ -157,6 +157,11 @@ fn corner_angle(mesh: &Mesh, corners: &[u32], i: usize) -> f32 {
     let at = mesh.position(corners[i]);
     let a = mesh.position(corners[if i + 1 == n { 0 } else { i + 1 }]) - at;
     let b = mesh.position(corners[if i == 0 { n - 1 } else { i - 1 }]) - at;
+    angle_between(a, b)
+}
+
+/// Angle between two vectors, 0 when one is 0.
+fn angle_between(a: Vec3, b: Vec3) -> f32 {
     let lengths = (a.length_squared() * b.length_squared()).sqrt();
     if lengths > 0.0 { approximate_acos(a.dot(b) / lengths) } else { 0.0 }
 }
@@ -186,14 +191,51 @@ fn safe_unit(v: Vec3) -> Vec3 {
 /// # Panics
 /// When the mesh names vertices or points that it does not have (see [`Mesh::check`]).
 pub fn compute_normals(mesh: &mut Mesh, settings: &NormalSettings) {
-    let faces = face_infos(mesh, settings.polygon);
-    let sums = point_sums(mesh, &faces, settings.weight);
+    let (faces, sums) = if mesh.faces.starts.is_empty() && settings.polygon == PolygonNormal::Newell {
+        triangle_sums(mesh, settings.weight)
+    } else {
+        let faces = face_infos(mesh, settings.polygon);
+        let sums = point_sums(mesh, &faces, settings.weight);
+        (faces, sums)
+    };
     let apart = points_apart(mesh, &faces, &sums, settings.crease_angle);
     let of_point = |&point: &u32| sums[point as usize].try_normalize().unwrap_or(Vec3::Z);
     mesh.vertices.normal = mesh.vertices.point.iter().map(of_point).collect();
     if apart.contains(&true) {
         groups::split(mesh, &faces, &apart, settings);
     }
+}
+
+/// Faces and weighted sums at points for triangles throughout: the same as [`face_infos`] and
+/// [`point_sums`] up to rounding, in one pass.
+fn triangle_sums(mesh: &Mesh, weight: NormalWeight) -> (Vec<FaceInfo>, Vec<Vec3>) {
+    let mut sums = vec![Vec3::ZERO; mesh.points.len()];
+    let info = |corners: &[u32]| {
+        let at = [corners[0], corners[1], corners[2]].map(|v| mesh.vertices.point[v as usize] as usize);
+        let [a, b, c] = at.map(|point| mesh.points[point]);
+        let (ab, ac, bc) = (b - a, c - a, c - b);
+        let vector = ab.cross(ac);
+        let normal = quick_unit(vector);
+        let area = 0.5 * vector.length();
+        let weights = match weight {
+            NormalWeight::Equal => [1.0; 3],
+            NormalWeight::Area => [area; 3],
+            NormalWeight::Angle => {
+                let (at_a, at_b) = (angle_between(ab, ac), angle_between(-ab, bc));
+                [at_a, at_b, (std::f32::consts::PI - at_a - at_b).max(0.0)]
+            }
+        };
+        at.iter().zip(weights).for_each(|(&point, weight)| sums[point] += normal * weight);
+        FaceInfo { normal, area }
+    };
+    let faces = mesh.faces.corners.chunks_exact(3).map(info).collect();
+    (faces, sums)
+}
+
+/// [`safe_unit`], without its precautions where the length is of an ordinary size.
+fn quick_unit(v: Vec3) -> Vec3 {
+    let squared = v.length_squared();
+    if squared > 1e-30 && squared < 1e30 { v * squared.sqrt().recip() } else { safe_unit(v) }
 }
 
 /// Weighted sums of face normals at every point.
@@ -214,14 +256,17 @@ fn points_apart(mesh: &Mesh, faces: &[FaceInfo], sums: &[Vec3], crease: Option<f
     const UNSEEN: u32 = u32::MAX;
     let mut apart = vec![false; mesh.points.len()];
     let mut surface_at = vec![UNSEEN; if mesh.faces.surface.is_empty() { 0 } else { mesh.points.len() }];
-    let cosine = crease.map(|angle| (0.5 * angle).clamp(0.0, std::f32::consts::FRAC_PI_2).cos());
+    // Square of the cosine of half the crease angle.
+    let least = crease.map(|angle| (0.5 * angle).clamp(0.0, std::f32::consts::FRAC_PI_2).cos().powi(2));
     for (f, (corners, face)) in mesh.faces.iter().zip(faces).enumerate() {
         let surface = mesh.faces.surface_of(f);
         let flat = mesh.surfaces.get(surface as usize).is_some_and(|s| !s.smooth);
         for &corner in corners {
             let point = mesh.vertices.point[corner as usize] as usize;
             let sum = sums[point];
-            let sharp = cosine.is_some_and(|c| face.normal.dot(sum) < c * sum.length());
+            let along = face.normal.dot(sum);
+            let sharp =
+                least.is_some_and(|least| along < 0.0 || along * along < least * sum.length_squared());
             let before = surface_at.get_mut(point).map_or(UNSEEN, |seen| std::mem::replace(seen, surface));
             let other_surface = before != UNSEEN && before != surface;
             apart[point] |= flat || sharp || other_surface;

@@ -105,6 +105,28 @@ impl Mesh {
         leaders.len() - count as usize
     }
 
+    /// Whether vertices have nothing but a place.
+    fn vertices_are_bare(&self) -> bool {
+        let v = &self.vertices;
+        v.normal.is_empty()
+            && v.texcoord0.is_empty()
+            && v.texcoord1.is_empty()
+            && v.color.is_empty()
+            && v.tangent.is_empty()
+            && self.morph_targets.iter().all(|t| t.normals.is_empty() && t.tangents.is_empty())
+    }
+
+    /// For every vertex the first one at its point.
+    fn first_at_point(&self) -> Vec<u32> {
+        let mut first = vec![NONE; self.points.len()];
+        let leader = |(i, &point): (usize, &u32)| {
+            let first = &mut first[point as usize];
+            *first = (*first).min(i as u32);
+            *first
+        };
+        self.vertices.point.iter().enumerate().map(leader).collect()
+    }
+
     /// Makes vertices one that agree in place and all attributes.
     fn join_equal_vertices(&mut self) {
         let v = &self.vertices;
@@ -126,7 +148,11 @@ impl Mesh {
                     .iter()
                     .all(|t| t.normals.get(a) == t.normals.get(b) && t.tangents.get(a) == t.tangents.get(b))
         };
-        let leaders = first_of_equals(v.point.len(), hash, alike);
+        let leaders = if self.vertices_are_bare() {
+            self.first_at_point()
+        } else {
+            first_of_equals(v.point.len(), hash, alike)
+        };
         let keep: Vec<bool> = leaders.iter().enumerate().map(|(i, &leader)| leader as usize == i).collect();
         let mut renumbered = vec![0; keep.len()];
         let mut count = 0;

@@ -128,8 +128,8 @@ fn whole_mesh(mut soup: Soup, keys: &[SurfaceKey]) -> Mesh {
         let range = corner_of(&soup.starts, run.first_face)..corner_of(&soup.starts, last_face);
         corners.extend(range.map(|c| unifier.vertex(soup.corner(c), class)));
     }
-    mesh.lines = soup.lines.iter().map(|(line, _)| line.map(|corner| unifier.vertex(corner, 0))).collect();
-    mesh.dots = soup.dots.iter().map(|(dot, _)| unifier.vertex(*dot, 0)).collect();
+    mesh.lines = soup.lines.iter().map(|(line, _)| line.map(|corner| unifier.loose(corner))).collect();
+    mesh.dots = soup.dots.iter().map(|(dot, _)| unifier.loose(*dot)).collect();
     mesh.faces = Faces { corners, starts: soup.starts, surface };
     mesh.vertices = unifier.into_vertices(&source, &|point| point);
     fill_missing_normals(&mut mesh);
@@ -182,10 +182,7 @@ fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mes
         Mesh { points: used.iter().map(|&p| soup.points[p as usize]).collect(), ..Mesh::default() };
     // Make faces, lines and dots over the vertices that they need.
     let mut unifier = Unifier::new(used.len());
-    let mut localize = |mut corner: Corner, class| {
-        corner.point = local_of_point[corner.point as usize];
-        unifier.vertex(corner, class)
-    };
+    let local = |corner: Corner| Corner { point: local_of_point[corner.point as usize], ..corner };
     let mut surfaces = Vec::new();
     let mut surface_numbers = HashMap::new();
     let mut face = Vec::new();
@@ -198,12 +195,12 @@ fn part_mesh(soup: &Soup, content: &Content, local_of_point: &mut [u32]) -> (Mes
         for f in run.first_face..last_face {
             face.clear();
             let range = corner_of(&soup.starts, f)..corner_of(&soup.starts, f + 1);
-            face.extend(range.map(|c| localize(soup.corner(c), class_of(key.smoothing))));
+            face.extend(range.map(|c| unifier.vertex(local(soup.corner(c)), class_of(key.smoothing))));
             mesh.faces.push(&face, surface);
         }
     }
-    mesh.lines = content.lines.iter().map(|line| line.map(|corner| localize(corner, 0))).collect();
-    mesh.dots = content.dots.iter().map(|&dot| localize(dot, 0)).collect();
+    mesh.lines = content.lines.iter().map(|line| line.map(|corner| unifier.loose(local(corner)))).collect();
+    mesh.dots = content.dots.iter().map(|&dot| unifier.loose(local(dot))).collect();
     let source = Attributes { texcoords: &soup.texcoords, normals: &soup.normals, colors: &soup.colors };
     mesh.vertices = unifier.into_vertices(&source, &|local| used[local as usize]);
     fill_missing_normals(&mut mesh);
@@ -302,6 +299,19 @@ impl Unifier {
         let made = self.make(corner, class);
         self.hashed.insert(key, made);
         made
+    }
+
+    /// A vertex for the corner of a line or dot: any of the point's that has what the corner names.
+    fn loose(&mut self, corner: Corner) -> u32 {
+        let mut vertex = self.first[corner.point as usize];
+        for _ in 0..CHAIN {
+            let Some(known) = self.corners.get(vertex as usize) else { break };
+            if corner.texcoord == NONE || corner.texcoord == known.texcoord {
+                return vertex;
+            }
+            vertex = self.next[vertex as usize];
+        }
+        self.vertex(corner, 0)
     }
 
     fn make(&mut self, corner: Corner, class: u64) -> u32 {

@@ -206,7 +206,7 @@ fn border_rows(
             }
             let uv = place(side, t);
             let point = edges.point(edge, i);
-            let vertex = b.vertex(point, normal(patch, uv), uv);
+            let vertex = b.vertex(point, sample(patch, uv).1, uv);
             seams.push(Seam { surface, point, vertex });
             (t, vertex)
         });
@@ -228,8 +228,9 @@ fn inside_rows(patch: &BicubicPatch, nu: u32, nv: u32, b: &mut Builder) -> Vec<V
         let v = f64::from(j) / f64::from(nv);
         let vertex = |i: u32| {
             let uv = DVec2::new(f64::from(i) / f64::from(nu), v);
-            let point = b.point(patch.at(uv.x, uv.y));
-            (uv.x, b.vertex(point, normal(patch, uv), uv))
+            let (place, normal) = sample(patch, uv);
+            let point = b.point(place);
+            (uv.x, b.vertex(point, normal, uv))
         };
         (1..nu).map(vertex).collect()
     };
@@ -274,7 +275,13 @@ fn smooth_seams(mut seams: Vec<Seam>, b: &mut Builder) {
     }
 }
 
-/// Unit normal at `(u, v)`; +y for a patch that is a curve or a point there.
-fn normal(patch: &BicubicPatch, uv: DVec2) -> DVec3 {
-    patch.normal(uv.x, uv.y).unwrap_or(DVec3::Y)
+/// Place and unit normal at `(u, v)`; +y for a patch that is a curve or a point there.
+fn sample(patch: &BicubicPatch, uv: DVec2) -> (DVec3, DVec3) {
+    let at = patch.evaluate(uv.x, uv.y);
+    let cross = at.du.cross(at.dv);
+    // Where the derivatives are near vanishing, the limit, which takes longer to find.
+    let size = at.du.length_squared().max(at.dv.length_squared());
+    let clear = cross.length_squared() > 1e-12 * size * size;
+    let normal = if clear { Some(cross.normalize()) } else { patch.normal(uv.x, uv.y) };
+    (at.position, normal.unwrap_or(DVec3::Y))
 }

@@ -1,0 +1,113 @@
+//! Lines and points: which pixels, which depths.
+
+use senca_math::glam::Vec4;
+use senca_raster::{
+    Blend, Buffers, Compare, Ids, Interpolation, Primitives, Rasterizer, ScanlineRasterizer, Shading, State,
+    TiledRasterizer,
+};
+
+const SIDE: u32 = 16;
+
+/// Clip space of a point given in pixels of a 16 x 16 target, y down.
+fn at(x: f32, y: f32, z: f32) -> Vec4 {
+    Vec4::new(x / 8.0 - 1.0, 1.0 - y / 8.0, z, 1.0)
+}
+
+fn rasterizers() -> [Box<dyn Rasterizer>; 2] {
+    [Box::new(ScanlineRasterizer), Box::new(TiledRasterizer::default())]
+}
+
+/// Pixels drawn, with how often.
+fn drawn(points: &[Vec4], indices: &[u32], state: &State, lines: bool) -> Vec<(u32, u32, f32)> {
+    let mut all = Vec::new();
+    for mut rasterizer in rasterizers() {
+        let mut buffers = Buffers::new(SIDE, SIDE);
+        let state = State { blend: Some(Blend::ADD), depth_test: Compare::Always, ..*state };
+        let p = Primitives { positions: points, varyings: &[], stride: 0, indices, ids: Ids::From(0) };
+        let shading = Shading::constant([1.0; 4]);
+        let mut target = buffers.target().unwrap();
+        if lines {
+            rasterizer.draw_lines(&mut target, &p, &state, &shading);
+        } else {
+            rasterizer.draw_points(&mut target, &p, &state, &shading);
+        }
+        let pixels =
+            (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE, buffers.color.pixel(i % SIDE, i / SIDE)[0]));
+        all.push(pixels.filter(|p| p.2 != 0.0).collect::<Vec<_>>());
+    }
+    assert_eq!(all[0], all[1]);
+    all.swap_remove(0)
+}
+
+fn pixels(from: [f32; 2], to: [f32; 2]) -> Vec<(u32, u32)> {
+    let points = [at(from[0], from[1], 0.5), at(to[0], to[1], 0.5)];
+    let found = drawn(&points, &[0, 1], &State::default(), true);
+    found.into_iter().map(|(x, y, _)| (x, y)).collect()
+}
+
+#[test]
+fn straight_lines_leave_out_their_end() {
+    assert_eq!(pixels([2.5, 3.5], [6.5, 3.5]), [(2, 3), (3, 3), (4, 3), (5, 3)]);
+    assert_eq!(pixels([6.5, 3.5], [2.5, 3.5]), [(3, 3), (4, 3), (5, 3), (6, 3)]);
+    assert_eq!(pixels([4.5, 1.5], [4.5, 4.5]), [(4, 1), (4, 2), (4, 3)]);
+    assert_eq!(pixels([1.5, 1.5], [4.5, 4.5]), [(1, 1), (2, 2), (3, 3)]);
+    assert_eq!(pixels([1.5, 1.5], [7.5, 3.5]), [(1, 1), (2, 1), (3, 2), (4, 2), (5, 2), (6, 3)]);
+    assert!(pixels([3.5, 3.5], [3.5, 3.5]).is_empty());
+}
+
+#[test]
+fn joined_lines_share_no_pixel() {
+    let points: Vec<Vec4> =
+        [[2.5, 2.5], [12.5, 4.5], [13.5, 12.5], [3.5, 11.5]].map(|[x, y]| at(x, y, 0.5)).to_vec();
+    let closed = drawn(&points, &[0, 1, 1, 2, 2, 3, 3, 0], &State::default(), true);
+    assert!(closed.iter().all(|p| p.2 == 1.0), "{closed:?}");
+    assert_eq!(closed.len(), 10 + 8 + 10 + 9);
+}
+
+#[test]
+fn lines_are_cut_in_homogeneous_space() {
+    // From behind the eye: only the part in front of the near plane is seen.
+    let points = [Vec4::new(0.0, 0.0, -1.0, -0.5), Vec4::new(0.45, 0.03, 0.5, 1.0)];
+    let found = drawn(&points, &[0, 1], &State::default(), true);
+    assert!(!found.is_empty() && found.iter().all(|p| p.0 >= 8), "{found:?}");
+    assert!(pixels([-200.0, 3.5], [216.0, 3.5]).len() == 16);
+    assert!(pixels([-2e7, 3.5], [2e7, 3.6]).len() == 16);
+    assert!(pixels([2.0, -5.0], [9.0, -1.0]).is_empty());
+    assert!(pixels([f32::NAN, 1.0], [3.0, 3.0]).is_empty());
+}
+
+#[test]
+fn wide_lines_and_large_points_are_centred() {
+    let wide = State { line_width: 3.0, point_size: 3.0, ..State::default() };
+    let points = [at(2.5, 6.5, 0.5), at(5.5, 6.5, 0.5)];
+    let found: Vec<_> = drawn(&points, &[0, 1], &wide, true).into_iter().map(|p| (p.0, p.1)).collect();
+    assert_eq!(found, [(2, 5), (3, 5), (4, 5), (2, 6), (3, 6), (4, 6), (2, 7), (3, 7), (4, 7)]);
+    let point: Vec<_> = drawn(&points, &[0], &wide, false).into_iter().map(|p| (p.0, p.1)).collect();
+    assert_eq!(point, [(1, 5), (2, 5), (3, 5), (1, 6), (2, 6), (3, 6), (1, 7), (2, 7), (3, 7)]);
+    let one: Vec<_> =
+        drawn(&points, &[1], &State::default(), false).into_iter().map(|p| (p.0, p.1)).collect();
+    assert_eq!(one, [(5, 6)]);
+}
+
+#[test]
+fn lines_have_depth_and_perspective() {
+    // w runs from 1 to 3: the middle of the image is a quarter along.
+    let points = [Vec4::new(-1.0, 0.0, 0.0, 1.0), Vec4::new(3.0, 0.0, 3.0, 3.0)];
+    for (interpolation, middle) in [(Interpolation::Perspective, 0.25), (Interpolation::Screen, 0.5)] {
+        let mut buffers = Buffers::new(100, 1);
+        let varyings = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let p = Primitives {
+            positions: &points,
+            varyings: &varyings,
+            stride: 3,
+            indices: &[0, 1],
+            ids: Ids::From(0),
+        };
+        let state = State { interpolation, ..State::default() };
+        let mut target = buffers.target().unwrap();
+        let c = ScanlineRasterizer.draw_lines(&mut target, &p, &state, &Shading::vertex_rgb());
+        assert_eq!((c.primitives, c.drawn, c.passed), (1, 1, 100));
+        assert!((buffers.color.pixel(50, 0)[0] - middle).abs() < 0.01);
+        assert!((buffers.depth[50] - 0.5).abs() < 0.01);
+    }
+}
