@@ -171,11 +171,11 @@ impl TiledRasterizer {
     /// Projects the vertices the indices refer to; returns the number of the first.
     fn project(&mut self, p: &Primitives<'_>, map: &ScreenMap, threads: usize) -> usize {
         let count = vertex_count(p);
-        let (first, last) = p.indices.iter().fold((u32::MAX, 0), |(a, b), &i| (a.min(i), b.max(i)));
+        let first = p.indices.iter().fold(u32::MAX, |a, &i| a.min(i));
+        let last = p.indices.iter().fold(0, |a, &i| a.max(i));
         let end = (last as usize + 1).min(count);
         let first = (first as usize).min(end);
         let positions = &p.positions[first..end];
-        self.vertices.clear();
         self.vertices.resize(positions.len(), ScreenVertex::default());
         let jobs = positions.chunks(RUN).zip(self.vertices.chunks_mut(RUN)).collect();
         share(threads, jobs, |(from, to): (&[_], &mut [ScreenVertex])| {
