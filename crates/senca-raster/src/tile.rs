@@ -109,6 +109,9 @@ fn row_range(width: usize, tile_x: usize, block: usize, y: usize) -> std::ops::R
 }
 
 impl TileBuffer {
+    /// Memory of its planes.
+    pub(crate) const BYTES: usize = 7 * 4 * TILE * TILE;
+
     /// Brings a block in, from the target or freshly cleared.
     #[cold]
     #[inline(never)]

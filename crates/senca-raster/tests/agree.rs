@@ -294,3 +294,31 @@ fn what_shows_past_the_rim_of_a_near_triangle_is_drawn() {
         assert!(bits(&a) == bits(&b), "shifted by {shift}");
     }
 }
+
+/// A sheet of `cells * cells * 2` triangles over the target.
+fn sheet(cells: u32) -> Mesh {
+    let mut mesh = Mesh { positions: Vec::new(), varyings: Vec::new(), indices: Vec::new() };
+    let at = |i: u32| i as f32 / cells as f32 * 2.0 - 1.0;
+    for i in 0..(cells + 1) * (cells + 1) {
+        mesh.positions.push(Vec4::new(at(i % (cells + 1)), at(i / (cells + 1)), 0.5, 1.0));
+        mesh.varyings.extend([0.5; STRIDE]);
+    }
+    for i in 0..cells * cells {
+        let a = i / cells * (cells + 1) + i % cells;
+        mesh.indices.extend([a, a + 1, a + cells + 2, a, a + cells + 2, a + cells + 1]);
+    }
+    mesh
+}
+
+#[test]
+fn scratch_memory_is_bounded() {
+    for side in [512, 4096] {
+        let mesh = sheet(200);
+        let mut rasterizer = tiled(1, SimdLevel::new());
+        let mut depth = vec![1.0; (side * side) as usize];
+        let mut target = Target::new(side, side).and_then(|t| t.with_depth(&mut depth)).unwrap();
+        rasterizer.draw(&mut target, &mesh.primitives(), &State::default(), &Shading::None);
+        let per_triangle = (rasterizer.scratch_bytes() - 150_000) as f64 / 80_000.0;
+        assert!(per_triangle <= 100.0, "{per_triangle} bytes per triangle at {side}");
+    }
+}
