@@ -70,3 +70,21 @@ fn transform(mesh: &mut Mesh, world_from_object: &DMat4) {
         }
     }
 }
+
+/// All meshes of `scene` as one of polygons, in world coordinates.
+pub(crate) fn combined(scene: &Scene, settings: &TessellationSettings) -> Result<Mesh, WriteError> {
+    let mut all = Mesh::default();
+    for placed in placed_meshes(scene, settings)? {
+        let mesh = &*placed.mesh;
+        let (points, vertices, surfaces) =
+            (all.points.len() as u32, all.vertices.point.len() as u32, all.surfaces.len() as u32);
+        all.points.extend(&mesh.points);
+        all.vertices.point.extend(mesh.vertices.point.iter().map(|point| points + point));
+        all.surfaces.extend(mesh.surfaces.iter().cloned());
+        for (face, corners) in mesh.faces.iter().enumerate() {
+            let corners: Vec<u32> = corners.iter().map(|corner| vertices + corner).collect();
+            all.faces.push(&corners, surfaces + mesh.faces.surface_of(face));
+        }
+    }
+    Ok(all)
+}

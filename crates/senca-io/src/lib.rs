@@ -6,11 +6,13 @@
 //! in place at once or not at all.
 
 pub mod classic;
+mod detect;
 mod error;
 mod files;
 mod flatten;
 pub mod gltf;
 pub mod images;
+mod load;
 mod mtl;
 mod normals;
 pub mod obj;
@@ -23,9 +25,11 @@ mod text;
 pub mod toml_scene;
 mod weld;
 
+pub use detect::{Format, detect};
 pub use error::{Location, ReadError, WriteError};
 use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
+pub use load::{load, load_bytes, load_bytes_with_hints, load_with_hints, save};
 pub use output::{write_file, write_file_while};
 pub use scene_file::{
     SceneFormat, read_scene, read_scene_and_hints, read_scene_file, read_scene_file_and_hints,

@@ -16,17 +16,6 @@ pub enum RenderError {
         /// What is wrong with it.
         source: ShapeError,
     },
-    /// A mesh names points, vertices or surfaces that it does not have, or has attributes that are
-    /// not as long as its vertices.
-    #[error("geometry {geometry} ({name:?}): {reason}")]
-    Mesh {
-        /// Number of the geometry.
-        geometry: u32,
-        /// Its name.
-        name: String,
-        /// What does not fit.
-        reason: String,
-    },
     /// The scene names an entry that it does not have.
     #[error("the scene names {kind} {index}, but there are only {count}")]
     IndexOutOfRange {

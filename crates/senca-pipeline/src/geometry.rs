@@ -6,8 +6,7 @@ use std::collections::HashMap;
 use senca_math::glam::{DMat4, Mat3, Mat4};
 use senca_math::{View, ViewKind};
 use senca_scene::{
-    Geometry, Instance, Mesh, PixelTolerance, Scene, Shape, ShapeError, TessellationSettings, Tolerance,
-    tessellate,
+    Geometry, Instance, Mesh, PixelTolerance, Scene, Shape, TessellationSettings, Tolerance, tessellate,
 };
 
 use crate::RenderError;
@@ -51,7 +50,7 @@ pub(crate) struct World<'s> {
 }
 
 impl<'s> World<'s> {
-    /// Tessellates what `scene` shows in `view`, a picture of `size` pixels, with silhouettes at most
+    /// Tessellates what `scene` (posed: see `Scene::at_time`) shows in `view`, a picture of `size` pixels, with silhouettes at most
     /// `tolerance_px` off. With `polygons` faces stay whole and no parts are made.
     pub(crate) fn new(
         scene: &'s Scene,
@@ -68,7 +67,7 @@ impl<'s> World<'s> {
                 continue;
             }
             let settings = tessellation(view, size, tolerance_px, &instance, polygons);
-            let mesh = world.mesh_of(scene, geometry, &instance, &settings, &mut ready)?;
+            let mesh = world.mesh_of(geometry, &instance, &settings, &mut ready)?;
             world.place(geometry, instance, mesh);
         }
         if !polygons {
@@ -77,21 +76,23 @@ impl<'s> World<'s> {
         Ok(world)
     }
 
-    /// Index of the mesh of an instance. Instances of one mesh that nothing bends share it.
+    /// Index of the mesh of an instance. Instances of one mesh share it; other shapes are tessellated
+    /// for each instance, as finely as it needs.
     fn mesh_of(
         &mut self,
-        scene: &'s Scene,
         geometry: &'s Geometry,
         instance: &Instance,
         settings: &TessellationSettings,
         ready: &mut HashMap<u32, usize>,
     ) -> Result<usize, RenderError> {
-        let shared = matches!(geometry.shape, Shape::Mesh(_)) && !is_bent(scene, instance);
+        let shared = matches!(geometry.shape, Shape::Mesh(_));
         if let Some(&mesh) = ready.get(&instance.geometry.0).filter(|_| shared) {
             return Ok(mesh);
         }
-        let mesh = mesh_of_instance(scene, geometry, instance, settings).map_err(|source| {
-            RenderError::Shape { geometry: instance.geometry.0, name: geometry.name.clone(), source }
+        let mesh = tessellate(&geometry.shape, settings).map_err(|source| RenderError::Shape {
+            geometry: instance.geometry.0,
+            name: geometry.name.clone(),
+            source,
         })?;
         self.meshes.push(mesh);
         if shared {
@@ -220,20 +221,4 @@ fn least_w(view: &View) -> f64 {
             if w > 0.0 && w.is_finite() { w } else { 1e-3 }
         }
     }
-}
-
-/// Whether a skin or morph targets bend the mesh of `instance`.
-fn is_bent(scene: &Scene, instance: &Instance) -> bool {
-    let node = &scene.nodes[instance.node.index()];
-    node.skin.is_some() || !node.morph_weights.is_empty()
-}
-
-/// The mesh of one instance, bent by its skin and morph targets.
-fn mesh_of_instance<'s>(
-    _scene: &'s Scene,
-    geometry: &'s Geometry,
-    _instance: &Instance,
-    settings: &TessellationSettings,
-) -> Result<Cow<'s, Mesh>, ShapeError> {
-    tessellate(&geometry.shape, settings)
 }

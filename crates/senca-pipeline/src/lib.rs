@@ -11,9 +11,12 @@ mod settings;
 mod shade;
 mod single_pass;
 pub mod stages;
+mod strokes;
 mod surface;
 #[cfg(test)]
 mod test_support;
+#[cfg(test)]
+mod tests;
 mod transformed;
 mod visibility;
 

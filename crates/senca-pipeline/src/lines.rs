@@ -61,7 +61,7 @@ pub fn wire_segments(
     width: u32,
     height: u32,
 ) -> Result<Vec<Segment>, RenderError> {
-    segments(scene, view, settings, [width, height], false, &Control::default())
+    segments(&scene.at_time(None, 0.0), view, settings, [width, height], false, &Control::default())
 }
 
 /// The parts of all edges that no face hides, exact to about a ten thousandth of a pixel. Edges
@@ -76,7 +76,7 @@ pub fn hidden_line_segments(
     width: u32,
     height: u32,
 ) -> Result<Vec<Segment>, RenderError> {
-    segments(scene, view, settings, [width, height], true, &Control::default())
+    segments(&scene.at_time(None, 0.0), view, settings, [width, height], true, &Control::default())
 }
 
 pub(crate) fn segments(

@@ -14,6 +14,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use senca_math::conventions::NO_ID;
 use senca_math::{Image, View};
 use senca_raster::{Counters, Rasterizer, ScanlineRasterizer, Shading as RasterShading, TiledRasterizer};
 use senca_scene::{Background, Scene};
@@ -26,6 +27,7 @@ use crate::report::{Control, Report, timed};
 use crate::settings::{Crop, Raster, Settings, Shading};
 use crate::shade::Shader;
 use crate::single_pass::SinglePass;
+use crate::strokes::Strokes;
 use crate::surface::{PixelGrid, TriangleSetup};
 use crate::visibility::{Drawer, EMPTY, Group, Layer, MaskCutter, Pass, Peeler, Planes, Window, groups};
 use crate::{RenderError, lines};
@@ -41,7 +43,8 @@ const MAX_LAYERS: u32 = 256;
 
 /// Draws `scene` as `view` sees it into `image`, all of it or the part that `settings.crop` names.
 ///
-/// Colours are linear; where nothing is seen and no background is set, alpha is 0. The scene's own
+/// Skins and morph targets bend their meshes as the nodes stand; take `Scene::at_time` for a moment of
+/// an animation. Colours are linear; where nothing is seen and no background is set, alpha is 0. The scene's own
 /// lights are used as they are: a scene without light is black but for its emission.
 ///
 /// # Errors
@@ -71,9 +74,12 @@ pub fn render_with(
     let area = settings.area(image.width(), image.height())?;
     let mut total = 0.0;
     let result = timed(&mut total, || {
-        on_threads(settings.threads, || match settings.shading {
-            shading if shading.is_lines() => lines::draw(scene, view, settings, image, &area, control),
-            _ => draw_faces(scene, view, settings, image, &area, control),
+        on_threads(settings.threads, || {
+            let scene = &*scene.at_time(None, 0.0);
+            match settings.shading {
+                shading if shading.is_lines() => lines::draw(scene, view, settings, image, &area, control),
+                _ => draw_faces(scene, view, settings, image, &area, control),
+            }
         })
     });
     let mut report = result??;
@@ -131,9 +137,16 @@ fn draw_faces(
     }
     control.check()?;
     report.triangles_in = u64::from(world.triangles);
+    let strokes = Strokes::new(&world, scene);
+    report.lines_drawn = strokes.len() as u64;
+    let count = report.triangles_in + report.lines_drawn;
+    if count >= u64::from(NO_ID) {
+        return Err(RenderError::TooManyTriangles { count });
+    }
     let mut frame = Frame {
         shader: &shader,
         groups: groups(&shader),
+        strokes,
         paper: Paper::new(scene, settings),
         control,
         rasterizer: rasterizer(settings),
@@ -151,6 +164,7 @@ fn draw_faces(
 struct Frame<'a, 'w> {
     shader: &'a Shader<'w>,
     groups: Vec<Group>,
+    strokes: Strokes,
     paper: Paper,
     control: &'a Control<'a>,
     rasterizer: Box<dyn Rasterizer>,
@@ -192,6 +206,7 @@ impl Frame<'_, '_> {
                 window,
                 paper: &self.paper,
                 planes: &self.planes,
+                strokes: &self.strokes,
                 ready: single.as_deref(),
                 layers: layers.as_deref(),
                 weight: 1.0 / self.shader.settings.samples as f32,
@@ -233,6 +248,7 @@ impl Frame<'_, '_> {
             self.drawer.draw(&mut pass, &mut target, group, &shading)?;
         }
         self.counters += pass.counters;
+        self.strokes.draw(self.shader, window, self.rasterizer.as_mut(), &mut target);
         Ok(())
     }
 
@@ -259,10 +275,7 @@ impl Frame<'_, '_> {
 
     /// What is seen behind `last` and before the opaque surface.
     fn next_layer(&mut self, window: &Window, last: &Planes) -> Result<Planes, RenderError> {
-        let mut layer = Planes {
-            depth: self.planes.depth.clone(),
-            ids: vec![senca_math::conventions::NO_ID; window.pixels()],
-        };
+        let mut layer = Planes { depth: self.planes.depth.clone(), ids: vec![NO_ID; window.pixels()] };
         let peeler = Peeler { width: window.area.width as usize, last };
         let mut target = layer.target(&window.area)?;
         let mut pass = Pass {
@@ -328,9 +341,12 @@ fn add_layer(
         let mut count = 0;
         for (x, sum) in row.iter_mut().enumerate() {
             let pixel = y * width + x;
-            let Some(triangle) = cache.get(layer.ids[pixel]) else { continue };
+            let id = layer.ids[pixel];
+            if id == NO_ID {
+                continue;
+            }
             let [px, py] = window.place(x, y);
-            let [r, g, b, a] = shader.shade(triangle, px, py, layer.depth[pixel]);
+            let [r, g, b, a] = shader.shade(cache.get(id), px, py, layer.depth[pixel]);
             let share = (1.0 - sum[3]) * a;
             *sum = [sum[0] + r * share, sum[1] + g * share, sum[2] + b * share, sum[3] + share];
             count += 1;
@@ -352,16 +368,14 @@ impl<'a, 'w> SetupCache<'a, 'w> {
         Self { shader, slots: [const { None }; 64] }
     }
 
-    /// Triangle `id`; `None` for "nothing".
-    fn get(&mut self, id: u32) -> Option<&TriangleSetup<'w>> {
-        if id == senca_math::conventions::NO_ID {
-            return None;
-        }
+    /// Triangle `id`, which must be one.
+    fn get(&mut self, id: u32) -> &TriangleSetup<'w> {
         let slot = &mut self.slots[(id % 64) as usize];
-        if slot.as_ref().is_none_or(|t| t.id != id) {
-            *slot = Some(self.shader.setup(id));
+        match slot {
+            Some(triangle) if triangle.id == id => {}
+            _ => *slot = Some(self.shader.setup(id)),
         }
-        slot.as_ref()
+        slot.get_or_insert_with(|| self.shader.setup(id))
     }
 }
 
@@ -371,6 +385,7 @@ struct Resolve<'a, 'w> {
     window: &'a Window,
     paper: &'a Paper,
     planes: &'a Planes,
+    strokes: &'a Strokes,
     /// Colours of the opaque surface, if they are known already.
     ready: Option<&'a [[f32; 4]]>,
     /// What lies over it, colours times alpha.
@@ -423,15 +438,17 @@ impl Resolve<'_, '_> {
     /// Colour times alpha, and whether a surface was shaded for it.
     fn pixel(&self, x: usize, y: usize, cache: &mut SetupCache<'_, '_>) -> ([f32; 4], bool) {
         let pixel = y * self.window.area.width as usize + x;
-        let triangle = cache.get(self.planes.ids[pixel]);
-        let surface = triangle.is_some();
-        let behind = match (triangle, self.ready) {
-            (None, _) => self.paper.at((self.window.area.y as usize + y) as u32, self.window.size[1]),
-            (Some(_), Some(ready)) => ready[pixel],
-            (Some(triangle), None) => {
-                let [px, py] = self.window.place(x, y);
-                self.shader.shade(triangle, px, py, self.planes.depth[pixel])
-            }
+        let id = self.planes.ids[pixel];
+        let [px, py] = self.window.place(x, y);
+        let surface = id != NO_ID;
+        let behind = if !surface {
+            self.paper.at((self.window.area.y as usize + y) as u32, self.window.size[1])
+        } else if let Some(stroke) = id.checked_sub(self.shader.world.triangles) {
+            self.strokes.shade(self.shader, stroke as usize, px, py)
+        } else if let Some(ready) = self.ready {
+            ready[pixel]
+        } else {
+            self.shader.shade(cache.get(id), px, py, self.planes.depth[pixel])
         };
         let Some(layers) = self.layers else { return (behind, surface) };
         let over = layers[pixel];

@@ -17,7 +17,7 @@ pub struct Report {
     pub triangles_clipped: u64,
     /// Sent on to be filled.
     pub triangles_drawn: u64,
-    /// Line segments drawn, edges and normals.
+    /// Line segments drawn, edges and normals; with faces, the lines and points of meshes.
     pub lines_drawn: u64,
     /// Pixels given a colour by a surface, over all samples and transparent layers.
     pub pixels_shaded: u64,

@@ -50,6 +50,10 @@ pub(crate) struct TriangleSetup<'w> {
     edges: [DVec3; 3],
     /// w of the corners.
     w: [f64; 3],
+    /// Places of the corners in the world.
+    positions: [Vec3; 3],
+    /// Normals at the corners in the world, on the side that is seen; zero where the mesh has none.
+    normals: [Vec3; 3],
     /// Whether the front is seen.
     pub(crate) front: bool,
 }
@@ -74,7 +78,13 @@ impl<'w> TriangleSetup<'w> {
         let clockwise = q[0].dot(edges[0]) > 0.0;
         let w = q.map(|q| q.z);
         let front = clockwise == placed.mirrored;
-        Self { id, part_index, part, placed, mesh, corners, edges, w, front }
+        let positions = corners.map(|c| placed.world_from_object_f32.transform_point3(mesh.position(c)));
+        let side = if front { 1.0 } else { -1.0 };
+        let normals = corners.map(|c| {
+            let normal = mesh.vertices.normal.get(c as usize).copied().unwrap_or_default();
+            (placed.world_from_object_normals * normal) * side
+        });
+        Self { id, part_index, part, placed, mesh, corners, edges, w, positions, normals, front }
     }
 
     /// Weights at (x, y), pixels from the picture's upper left corner, not limited to the triangle.
@@ -108,8 +118,7 @@ impl<'w> TriangleSetup<'w> {
 
     /// Place in the world.
     pub(crate) fn position(&self, weights: &Weights) -> Vec3 {
-        let object = weights.of_vec3(self.corners.map(|c| self.mesh.position(c)));
-        self.placed.world_from_object_f32.transform_point3(object)
+        weights.of_vec3(self.positions)
     }
 
     /// Middle of the triangle in the world.
@@ -126,12 +135,7 @@ impl<'w> TriangleSetup<'w> {
     /// Unit normal of the surface, interpolated, on the side that is seen. Where the mesh has no
     /// normals or they cancel, that of the plane.
     pub(crate) fn normal(&self, weights: &Weights) -> Vec3 {
-        let normals = &self.mesh.vertices.normal;
-        if normals.is_empty() {
-            return self.plane_normal();
-        }
-        let object = weights.of_vec3(self.corners.map(|c| normals[c as usize]));
-        let normal = self.outward(self.placed.world_from_object_normals * object);
+        let normal = weights.of_vec3(self.normals).normalize_or_zero();
         if normal == Vec3::ZERO { self.plane_normal() } else { normal }
     }
 

@@ -96,11 +96,29 @@ fn one_level<S: Simd>(
     t: F<S>,
 ) -> Rgba<S> {
     let last = texture.levels.len() - 1;
-    let fine = read(simd, sampler, &texture.levels[number.min(last)], uv, sampler.minify);
+    let (fine, coarse) = (&texture.levels[number.min(last)], &texture.levels[(number + 1).min(last)]);
     if sampler.mip != Mip::Linear {
-        return fine;
+        return read(simd, sampler, fine, uv, sampler.minify);
     }
-    let coarse = read(simd, sampler, &texture.levels[(number + 1).min(last)], uv, sampler.minify);
+    if sampler.minify == Filter::Linear
+        && let (Texels::Rgba8(fine_texels), Texels::Rgba8(coarse_texels)) = (&fine.texels, &coarse.texels)
+    {
+        let (a, b) = (taps(simd, sampler, fine, uv), taps(simd, sampler, coarse, uv));
+        if (a.beside & b.beside).all_true() {
+            // All texels are fetched before the first is used: what is written lane by lane can only be
+            // read as a vector once the writing is over, and so that wait comes once.
+            let (mut from_fine, mut from_coarse) = (Quads::default(), Quads::default());
+            fetch(fine_texels, &a, &mut from_fine);
+            fetch(coarse_texels, &b, &mut from_coarse);
+            return lerp(
+                mixed(simd, quads(simd, &from_fine), &a),
+                mixed(simd, quads(simd, &from_coarse), &b),
+                t,
+            );
+        }
+    }
+    let fine = read(simd, sampler, fine, uv, sampler.minify);
+    let coarse = read(simd, sampler, coarse, uv, sampler.minify);
     lerp(fine, coarse, t)
 }
 
@@ -188,11 +206,9 @@ fn read_inline<S: Simd>(
     uv: [F<S>; 2],
     filter: Filter,
 ) -> Rgba<S> {
-    let x = position(simd, sampler.grid, uv[0], level.width);
-    let y = position(simd, sampler.grid, uv[1], level.height);
     match filter {
-        Filter::Nearest => nearest(simd, sampler, level, x, y),
-        Filter::Linear => bilinear(simd, sampler, level, x, y),
+        Filter::Nearest => nearest(simd, sampler, level, uv),
+        Filter::Linear => bilinear(simd, level, &taps(simd, sampler, level, uv)),
     }
 }
 
@@ -238,21 +254,40 @@ fn remainder<S: Simd>(simd: S, i: I<S>, n: i32) -> I<S> {
 }
 
 #[inline(always)]
-fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, x: F<S>, y: F<S>) -> Rgba<S> {
+fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Rgba<S> {
+    let x = position(simd, sampler.grid, uv[0], level.width);
+    let y = position(simd, sampler.grid, uv[1], level.height);
     let half = F::splat(simd, 0.5);
     let i = wrapped(simd, sampler.wrap_u, (x + half).floor().to_int(), level.width);
     let j = wrapped(simd, sampler.wrap_v, (y + half).floor().to_int(), level.height);
     let index = j * I::splat(simd, level.width as i32) + i;
     match &level.texels {
         Texels::Rgba8(texels) => crate::blend::unpack(simd, gather(simd, texels, index)),
-        Texels::Rgba32F(texels) => gather_float(simd, texels, index),
+        Texels::Rgba32F(texels) => {
+            let mut out = [[0f32; LANES]; 4];
+            gather_planes(texels, &index.to_array(), &mut out);
+            load4(simd, &out)
+        }
     }
 }
 
+/// Where the four texels around a position are, and the position between them, 0 to 256.
+struct Taps<S: Simd> {
+    /// Column of the left ones, and of the right ones.
+    columns: [I<S>; 2],
+    /// First texel of the upper row, and of the lower.
+    rows: [I<S>; 2],
+    s: F<S>,
+    t: F<S>,
+    /// The right ones follow the left ones in memory.
+    beside: mask32x16<S>,
+}
+
 #[inline(always)]
-fn bilinear<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, x: F<S>, y: F<S>) -> Rgba<S> {
+fn taps<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Taps<S> {
+    let x = position(simd, sampler.grid, uv[0], level.width);
+    let y = position(simd, sampler.grid, uv[1], level.height);
     let (fx, fy) = (x.floor(), y.floor());
-    let (s, t) = (x - fx, y - fy);
     let (i, j): (I<S>, I<S>) = (fx.to_int(), fy.to_int());
     let one = I::splat(simd, 1);
     let i0 = wrapped(simd, sampler.wrap_u, i, level.width);
@@ -260,33 +295,63 @@ fn bilinear<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, x: F<S>, 
     let width = I::splat(simd, level.width as i32);
     let row0 = wrapped(simd, sampler.wrap_v, j, level.height) * width;
     let row1 = wrapped(simd, sampler.wrap_v, j + one, level.height) * width;
+    Taps { columns: [i0, i1], rows: [row0, row1], s: x - fx, t: y - fy, beside: i1.simd_eq(i0 + one) }
+}
+
+#[inline(always)]
+fn bilinear<S: Simd>(simd: S, level: &TextureLevel, taps: &Taps<S>) -> Rgba<S> {
+    let ([i0, i1], [row0, row1]) = (taps.columns, taps.rows);
     match &level.texels {
+        Texels::Rgba8(texels) if taps.beside.all_true() => {
+            let mut from = Quads::default();
+            fetch(texels, taps, &mut from);
+            mixed(simd, quads(simd, &from), taps)
+        }
         Texels::Rgba8(texels) => {
-            let side_by_side = i1.simd_eq(i0 + one);
-            let pairs = if side_by_side.all_true() {
-                [gather_pairs(simd, texels, row0 + i0), gather_pairs(simd, texels, row1 + i0)]
-            } else {
-                [
-                    [gather(simd, texels, row0 + i0), gather(simd, texels, row0 + i1)],
-                    [gather(simd, texels, row1 + i0), gather(simd, texels, row1 + i1)],
-                ]
-            };
-            mixed(simd, pairs, s, t)
+            let upper = [gather(simd, texels, row0 + i0), gather(simd, texels, row0 + i1)];
+            let lower = [gather(simd, texels, row1 + i0), gather(simd, texels, row1 + i1)];
+            mixed(simd, [upper, lower], taps)
         }
         Texels::Rgba32F(texels) => {
-            let upper = lerp(gather_float(simd, texels, row0 + i0), gather_float(simd, texels, row0 + i1), s);
-            let lower = lerp(gather_float(simd, texels, row1 + i0), gather_float(simd, texels, row1 + i1), s);
-            lerp(upper, lower, t)
+            let at = |row: I<S>, i: I<S>| (row + i).to_array();
+            let mut out = [[[0f32; LANES]; 4]; 4];
+            let indices = [at(row0, i0), at(row0, i1), at(row1, i0), at(row1, i1)];
+            for (out, index) in out.iter_mut().zip(&indices) {
+                gather_planes(texels, index, out);
+            }
+            let upper = lerp(load4(simd, &out[0]), load4(simd, &out[1]), taps.s);
+            let lower = lerp(load4(simd, &out[2]), load4(simd, &out[3]), taps.s);
+            lerp(upper, lower, taps.t)
         }
     }
 }
 
-/// Mean of four texels, weighted by the position `s`, `t` between them.
+/// Texels beside each other, by lane: upper rows, then lower.
+type Quads = [[[[u32; 2]; LANES / 2]; 2]; 2];
+
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, [[t00, t10], [t01, t11]]: [[u32x16<S>; 2]; 2], s: F<S>, t: F<S>) -> Rgba<S> {
+fn fetch<S: Simd>(texels: &[[u8; 4]], taps: &Taps<S>, out: &mut Quads) {
+    let [upper, lower] = out;
+    gather_word_pairs(texels, &(taps.rows[0] + taps.columns[0]).to_array(), upper.as_flattened_mut());
+    gather_word_pairs(texels, &(taps.rows[1] + taps.columns[0]).to_array(), lower.as_flattened_mut());
+}
+
+/// Upper left and right, lower left and right.
+#[inline(always)]
+fn quads<S: Simd>(simd: S, from: &Quads) -> [[u32x16<S>; 2]; 2] {
+    let a = u32x16::from_slice(simd, from[0][0].as_flattened());
+    let b = u32x16::from_slice(simd, from[0][1].as_flattened());
+    let c = u32x16::from_slice(simd, from[1][0].as_flattened());
+    let d = u32x16::from_slice(simd, from[1][1].as_flattened());
+    [[a.unzip_low(b), a.unzip_high(b)], [c.unzip_low(d), c.unzip_high(d)]]
+}
+
+/// Mean of four texels, weighted by the position between them.
+#[inline(always)]
+fn mixed<S: Simd>(simd: S, [[t00, t10], [t01, t11]]: [[u32x16<S>; 2]; 2], taps: &Taps<S>) -> Rgba<S> {
     let (scale, half) = (F::splat(simd, 256.0), F::splat(simd, 0.5));
-    let s: I<S> = (s * scale + half).to_int();
-    let t: I<S> = (t * scale + half).to_int();
+    let s: I<S> = (taps.s * scale + half).to_int();
+    let t: I<S> = (taps.t * scale + half).to_int();
     let w11 = (s * t + I::splat(simd, 128)) >> 8;
     let weights = [I::splat(simd, 256) - s - t + w11, s - w11, t - w11, w11];
     let texels = [t00, t10, t01, t11];
@@ -316,16 +381,6 @@ fn gather<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> u32x16<S> {
     u32x16::load_array(simd, out)
 }
 
-/// The texels at `index` and at the next.
-#[inline(always)]
-fn gather_pairs<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> [u32x16<S>; 2] {
-    let mut out = [[[0u32; 2]; LANES / 2]; 2];
-    gather_word_pairs(texels, &index.to_array(), out.as_flattened_mut());
-    let a = u32x16::from_slice(simd, out[0].as_flattened());
-    let b = u32x16::from_slice(simd, out[1].as_flattened());
-    [a.unzip_low(b), a.unzip_high(b)]
-}
-
 // The loops below go through memory on purpose: inlined into vector code, every index is taken out of
 // its register and every texel put into one, lane by lane, at twice the cost.
 
@@ -347,14 +402,12 @@ fn gather_word_pairs(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [[u32; 
 }
 
 #[inline(always)]
-fn gather_float<S: Simd>(simd: S, texels: &[[f32; 4]], index: I<S>) -> Rgba<S> {
-    let mut out = [[0f32; LANES]; 4];
-    gather_planes(texels, &index.to_array(), &mut out);
+fn load4<S: Simd>(simd: S, planes: &[[f32; LANES]; 4]) -> Rgba<S> {
     [
-        F::load_array(simd, out[0]),
-        F::load_array(simd, out[1]),
-        F::load_array(simd, out[2]),
-        F::load_array(simd, out[3]),
+        F::load_array_ref(simd, &planes[0]),
+        F::load_array_ref(simd, &planes[1]),
+        F::load_array_ref(simd, &planes[2]),
+        F::load_array_ref(simd, &planes[3]),
     ]
 }
 

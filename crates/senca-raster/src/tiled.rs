@@ -294,6 +294,15 @@ impl Frame<'_> {
             _ => [a, b, c],
         };
         let values = from.map(|i| varyings_of(p, i));
+        if let [r, _, _] = *self.pass.slots
+            && let Some(values) = three(values, r)
+        {
+            // The usual case, a colour without alpha, with its lengths known.
+            for (slot, to) in batch.values.iter_mut().enumerate().take(3) {
+                (to[0][lane], to[1][lane], to[2][lane]) = (values[0][slot], values[1][slot], values[2][slot]);
+            }
+            return;
+        }
         for (slot, &varying) in self.pass.slots.iter().enumerate() {
             let to = &mut batch.values[slot % MAX_VARYINGS];
             for k in 0..3 {
@@ -314,6 +323,13 @@ impl Frame<'_> {
             }
         }
     }
+}
+
+/// Three varyings from `first` on, of each corner.
+#[inline(always)]
+fn three(values: [&[f32]; 3], first: usize) -> Option<[&[f32; 3]; 3]> {
+    let [a, b, c] = values;
+    Some([a.get(first..)?.first_chunk()?, b.get(first..)?.first_chunk()?, c.get(first..)?.first_chunk()?])
 }
 
 /// Memory of one thread.

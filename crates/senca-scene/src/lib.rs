@@ -4,6 +4,35 @@
 //! animations) whose entries name each other by typed index. Nodes form trees; each places a
 //! geometry, a light or a camera in its parent's frame, and several nodes may place the same
 //! geometry (instances). Readers build scenes, renderers take `&Scene`.
+//!
+//! What can be done with one before it is drawn:
+//!
+//! | question | answer |
+//! |---|---|
+//! | does it hold together, and can it be mended? | [`Scene::validate`], [`Scene::sanitize`], [`Mesh::check`] |
+//! | what does it look like at time t? | [`Scene::at_time`], [`Scene::pose`], [`posed_mesh`] |
+//! | where is everything, how big is it? | [`Scene::instances`], [`Scene::bounds`], [`Scene::counts`] |
+//! | from where is it seen? | [`Scene::placed_cameras`], [`Camera::view`], [`Scene::frame_all`] |
+//! | what lights it? | [`Scene::is_lit`], [`default_lights`], [`Scene::light_by_default`] |
+//! | which triangles is a shape? | [`tessellate`], [`patch_to_polygons`], [`triangulated`] |
+//! | which normals does a mesh have? | [`compute_normals`], [`polygon_normals_1991`] |
+//! | is a mesh closed, oriented, of one piece? | [`Topology`], [`Mesh::weld`], [`Mesh::flip`], [`Mesh::signed_volume`] |
+//!
+//! ```
+//! use senca_scene::{Scene, Shape, TessellationSettings, Tolerance, Topology, tessellate};
+//!
+//! let scene = Scene::of_shape("ball", Shape::Sphere { radius: 2.0 });
+//! let settings = TessellationSettings { tolerance: Tolerance::World(0.01), ..Default::default() };
+//! let mesh = tessellate(&scene.geometries[0].shape, &settings)?;
+//! assert!(Topology::new(&mesh).is_closed());
+//!
+//! let picture_aspect = 4.0 / 3.0;
+//! let placed = scene.frame_all(picture_aspect);
+//! let view = placed.camera.view(&placed.world_from_camera, picture_aspect, &scene.bounds())?;
+//! let center = view.clip_from_world * senca_scene::math::glam::DVec4::W;
+//! assert!(center.w > 0.0 && center.x.abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod animation;
 mod bounds;

@@ -24,11 +24,17 @@ impl Scene {
             return Cow::Borrowed(self);
         }
         let mut posed = self.clone();
-        if let Some(animation) = animation {
-            posed.move_nodes(animation, seconds);
-        }
-        posed.bend_meshes();
+        posed.pose(animation, seconds);
         Cow::Owned(posed)
+    }
+
+    /// Does to the scene itself what [`Scene::at_time`] does to a copy. Animations stay, so nodes can
+    /// be moved again; meshes that were bent stay bent.
+    pub fn pose(&mut self, animation: Option<AnimationId>, seconds: f64) {
+        if let Some(animation) = animation {
+            self.move_nodes(animation, seconds);
+        }
+        self.bend_meshes();
     }
 
     /// Whether a node deforms its geometry.

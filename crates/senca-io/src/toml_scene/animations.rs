@@ -1,7 +1,9 @@
 //! Keyframe animation.
 
+use std::collections::{BTreeMap, HashMap};
+
 use senca_math::glam::{DQuat, DVec3};
-use senca_scene::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation, NodeId};
+use senca_scene::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation, NodeId, Scene};
 
 use super::builder::Builder;
 use super::names::hint;
@@ -39,61 +41,74 @@ const INTERPOLATIONS: [(&str, Interpolation); 3] =
 impl<'a> Builder<'a> {
     /// Reads `[[animation]]`; entries of one name run together.
     pub(super) fn read_animations(&mut self, root: &mut Table<'a>) -> Result<()> {
+        let mut animations = std::mem::take(&mut self.scene.animations);
+        let nodes = nodes_by_name(&self.scene);
+        let mut index_of: HashMap<String, usize> = HashMap::new();
+        for (index, animation) in animations.iter().enumerate() {
+            index_of.entry(animation.name.clone()).or_insert(index);
+        }
         for mut table in root.tables("animation")? {
             let name = table.read_or("name", "", Value::string)?;
-            let channel = self.channel(&mut table)?;
+            let channel = channel(&mut table, &nodes)?;
             table.finish()?;
-            match self.scene.animations.iter_mut().find(|animation| animation.name == name) {
-                Some(animation) => animation.channels.push(channel),
-                None => {
-                    self.scene.animations.push(Animation { name: name.to_owned(), channels: vec![channel] })
-                }
+            let index = *index_of.entry(name.to_owned()).or_insert(animations.len());
+            if index == animations.len() {
+                animations.push(Animation { name: name.to_owned(), channels: Vec::new() });
             }
+            animations[index].channels.push(channel);
         }
+        self.scene.animations = animations;
         Ok(())
     }
+}
 
-    fn channel(&self, table: &mut Table<'a>) -> Result<Channel> {
-        let node = self.node_named(table.require("node")?)?;
-        let property = table.require("property")?.choice(&PROPERTIES)?;
-        let times = times(table.require("times")?)?;
-        let interpolation =
-            table.read_or("interpolation", Interpolation::Linear, |value| value.choice(&INTERPOLATIONS))?;
-        let target = ChannelTarget { node };
-        if let Property::Path = property {
-            let values = path(table, times.len(), interpolation)?;
-            return Ok(Channel { target, times, values, interpolation });
-        }
-        let value = table.require("values")?;
-        let keys = Keys { value, count: times.len(), cubic: interpolation == Interpolation::CubicSpline };
-        let values = match property {
-            Property::Translate | Property::Path => ChannelValues::Translation(keys.read(Value::vec3)?),
-            Property::Scale if keys.cubic => ChannelValues::Scale(keys.read(Value::vec3)?),
-            Property::Scale => ChannelValues::Scale(keys.read(read_scale)?),
-            Property::Rotate => return keys.rotation(target, times, interpolation),
-            Property::Weights => keys.weights()?,
-        };
-        Ok(Channel { target, times, values, interpolation })
+/// The nodes that have names; `None` for a name that several have.
+type NodesByName<'s> = BTreeMap<&'s str, Option<NodeId>>;
+
+fn nodes_by_name(scene: &Scene) -> NodesByName<'_> {
+    let mut nodes = NodesByName::new();
+    for (i, node) in scene.nodes.iter().enumerate().filter(|(_, node)| !node.name.is_empty()) {
+        let id = Some(NodeId(i as u32));
+        nodes.entry(&node.name).and_modify(|known| *known = None).or_insert(id);
     }
+    nodes
+}
 
-    /// The node of a name that only one node has.
-    fn node_named(&self, value: Value<'a>) -> Result<NodeId> {
-        let name = value.string()?;
-        let mut found =
-            (0..self.scene.nodes.len()).filter(|&i| !name.is_empty() && self.scene.nodes[i].name == name);
-        match (found.next(), found.next()) {
-            (Some(node), None) => Ok(NodeId(node as u32)),
-            (Some(_), Some(_)) => Err(value.error(format!(
-                "several objects are called \"{name}\"; give the one that moves a name of its own"
-            ))),
-            _ => {
-                let mut names: Vec<&str> = self.scene.nodes.iter().map(|node| node.name.as_str()).collect();
-                names.retain(|name| !name.is_empty());
-                names.sort_unstable();
-                names.dedup();
-                Err(value
-                    .error(format!("no object, light or camera is called \"{name}\"{}", hint(name, &names))))
-            }
+fn channel(table: &mut Table<'_>, nodes: &NodesByName<'_>) -> Result<Channel> {
+    let node = node_named(table.require("node")?, nodes)?;
+    let property = table.require("property")?.choice(&PROPERTIES)?;
+    let times = times(table.require("times")?)?;
+    let interpolation =
+        table.read_or("interpolation", Interpolation::Linear, |value| value.choice(&INTERPOLATIONS))?;
+    let target = ChannelTarget { node };
+    if let Property::Path = property {
+        let values = path(table, times.len(), interpolation)?;
+        return Ok(Channel { target, times, values, interpolation });
+    }
+    let value = table.require("values")?;
+    let keys = Keys { value, count: times.len(), cubic: interpolation == Interpolation::CubicSpline };
+    let values = match property {
+        Property::Translate | Property::Path => ChannelValues::Translation(keys.read(Value::vec3)?),
+        Property::Scale if keys.cubic => ChannelValues::Scale(keys.read(Value::vec3)?),
+        Property::Scale => ChannelValues::Scale(keys.read(read_scale)?),
+        Property::Rotate => return keys.rotation(target, times, interpolation),
+        Property::Weights => keys.weights()?,
+    };
+    Ok(Channel { target, times, values, interpolation })
+}
+
+/// The node of a name that only one node has.
+fn node_named(value: Value<'_>, nodes: &NodesByName<'_>) -> Result<NodeId> {
+    let name = value.string()?;
+    match nodes.get(name) {
+        Some(Some(node)) => Ok(*node),
+        Some(None) => Err(value.error(format!(
+            "several objects are called \"{name}\"; give the one that moves a name of its own"
+        ))),
+        None => {
+            let names: Vec<&str> = nodes.keys().copied().collect();
+            let message = format!("no object, light or camera is called \"{name}\"{}", hint(name, &names));
+            Err(value.error(message))
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Files that stand in place of objects: fetching them, and taking their content into the scene.
 
+use std::collections::HashMap;
+
 use senca_scene::{
     Animation, CameraId, GeometryId, ImageId, LightId, Material, MaterialId, Node, NodeId, Reflection, Scene,
     Shape, Skin, SkinId, TextureId, TextureRef, Warning,
@@ -103,15 +105,27 @@ impl Include {
             let joints = skin.joints.iter().map(moved).collect();
             scene.skins.push(Skin { joints, ..skin.clone() });
         }
+        self.place_animations(scene, first_node);
+        self.roots.iter().map(moved).collect()
+    }
+
+    /// Adds the channels for the nodes that begin at `first_node`; animations of one name run
+    /// together.
+    fn place_animations(&self, scene: &mut Scene, first_node: u32) {
+        if self.animations.is_empty() {
+            return;
+        }
+        let known = scene.animations.iter().enumerate().rev();
+        let mut index_of: HashMap<String, usize> = known.map(|(i, a)| (a.name.clone(), i)).collect();
         for animation in &self.animations {
             let mut channels = animation.channels.clone();
-            channels.iter_mut().for_each(|channel| channel.target.node = moved(&channel.target.node));
-            match scene.animations.iter_mut().find(|known| known.name == animation.name) {
-                Some(known) => known.channels.append(&mut channels),
-                None => scene.animations.push(Animation { name: animation.name.clone(), channels }),
+            channels.iter_mut().for_each(|channel| channel.target.node.0 += first_node);
+            let next = scene.animations.len();
+            match *index_of.entry(animation.name.clone()).or_insert(next) {
+                index if index < next => scene.animations[index].channels.append(&mut channels),
+                _ => scene.animations.push(Animation { name: animation.name.clone(), channels }),
             }
         }
-        self.roots.iter().map(moved).collect()
     }
 }
 

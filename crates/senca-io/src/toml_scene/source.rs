@@ -131,7 +131,7 @@ impl<'a> Table<'a> {
             return Ok(value);
         }
         // A misspelt key is the likelier mistake than a missing one.
-        let misspelt = self.unknown().find(|(name, _)| nearest(name, [key]).is_some());
+        let misspelt = self.unknown().take(1000).find(|(name, _)| nearest(name, [key]).is_some());
         Err(match misspelt {
             Some((name, span)) => self
                 .source

@@ -201,3 +201,20 @@ fn degenerate_and_unused_vertices_get_some_unit_normal() {
         );
     }
 }
+
+#[test]
+fn one_pass_over_triangles_is_the_general_way() {
+    let torus = crate::Shape::Torus { major_radius: 2.0, minor_radius: 0.7 };
+    let mut mesh = crate::tessellate(&torus, &crate::TessellationSettings::default()).unwrap().into_owned();
+    mesh.points[7] = mesh.points[8];
+    mesh.points[30] *= 1e-25;
+    for weight in [NormalWeight::Equal, NormalWeight::Area, NormalWeight::Angle] {
+        let (faces, sums) = triangle_sums(&mesh, weight);
+        let general = face_infos(&mesh, PolygonNormal::Newell);
+        let general_sums = point_sums(&mesh, &general, weight);
+        for (a, b) in faces.iter().zip(&general) {
+            assert!(a.normal.distance(b.normal) < 1e-5 && (a.area - b.area).abs() < 1e-6);
+        }
+        sums.iter().zip(&general_sums).for_each(|(a, b)| assert!(a.distance(*b) < 1e-3, "{a} {b}"));
+    }
+}

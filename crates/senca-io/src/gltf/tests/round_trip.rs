@@ -184,7 +184,7 @@ fn lights() -> Vec<Light> {
 fn cameras() -> Vec<Camera> {
     let perspective = Projection::Perspective { yfov: 0.7, aspect: Some(1.3), near: Some(0.1), far: None };
     let parallel =
-        Projection::Orthographic { height: 3.0, aspect: Some(2.0), near: Some(-1.0), far: Some(9.0) };
+        Projection::Orthographic { height: 3.0, aspect: Some(2.0), near: Some(0.5), far: Some(9.0) };
     vec![
         Camera { name: "eye".into(), projection: perspective },
         Camera { name: String::new(), projection: parallel },
@@ -287,8 +287,23 @@ fn what_gltf_cannot_hold_is_told() {
     assert_eq!(said.len(), 5, "{said:?}");
     let back = read("b.glb", &bytes, &NoFiles).expect("sound");
     assert!(back.lights.is_empty());
-    let Reflection::MetallicRoughness(m) = &back.materials[0].reflection else { panic!("converted") };
-    assert_eq!((m.base_color, m.metallic, m.roughness), (LinearRgb::splat(0.8), 0.0, 0.5));
+    let nearest = Reflection::MetallicRoughness(scene.materials[0].to_metallic_roughness());
+    assert_eq!(back.materials[0].reflection, nearest);
+}
+
+/// glTF's parallel cameras see nothing behind them, so the camera steps back in a node of its own.
+#[test]
+fn parallel_cameras_that_see_behind_themselves_step_back() {
+    let mut scene = full_scene();
+    scene.cameras[1].projection =
+        Projection::Orthographic { height: 3.0, aspect: Some(2.0), near: Some(-1.0), far: Some(9.0) };
+    let back = read_back(&scene);
+    let expected =
+        Projection::Orthographic { height: 3.0, aspect: Some(2.0), near: Some(0.0), far: Some(10.0) };
+    assert_eq!(back.cameras[1].projection, expected);
+    let (i, node) = back.nodes.iter().enumerate().find(|(_, n)| n.camera.is_some()).expect("a camera's node");
+    assert_eq!(node.transform.matrix(), DMat4::from_translation(DVec3::Z));
+    assert_eq!(back.nodes[2].children, [NodeId(i as u32)]);
 }
 
 #[test]

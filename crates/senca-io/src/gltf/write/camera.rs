@@ -6,7 +6,7 @@
 
 use serde_json::{Map, Value, json};
 
-use senca_scene::math::glam::DMat4;
+use senca_scene::math::glam::{DMat4, DVec3};
 use senca_scene::math::{Aabb, ViewKind};
 use senca_scene::{Camera, Projection};
 
@@ -28,6 +28,10 @@ pub(super) enum CameraPlace {
 impl Output {
     /// Writes a camera.
     pub(super) fn add_camera(&mut self, camera: &Camera) -> CameraPlace {
+        if let Some((node_from_camera, projection)) = stepped_back(&camera.projection) {
+            let index = self.push("cameras", camera_json(&camera.name, &projection));
+            return CameraPlace::Moved(index, node_from_camera);
+        }
         if !matches!(camera.projection, Projection::Operation(_)) {
             return CameraPlace::Here(self.push("cameras", camera_json(&camera.name, &camera.projection)));
         }
@@ -45,6 +49,15 @@ impl Output {
             }
         }
     }
+}
+
+/// A parallel projection that begins behind its camera, which glTF does not allow, seen from there.
+fn stepped_back(projection: &Projection) -> Option<(DMat4, Projection)> {
+    let Projection::Orthographic { height, aspect, near: Some(near), far } = *projection else { return None };
+    let back = Some(-near).filter(|back| *back > 0.0 && back.is_finite())?;
+    let far = far.map(|far| far + back);
+    let place = DMat4::from_translation(DVec3::new(0.0, 0.0, back));
+    Some((place, Projection::Orthographic { height, aspect, near: Some(0.0), far }))
 }
 
 /// The camera through the middle of its window that sees what a viewing operation sees, and its
@@ -108,7 +121,6 @@ fn camera_json(name: &str, projection: &Projection) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use senca_scene::math::glam::DVec3;
     use senca_scene::math::{ViewParameters, ViewWindow, ViewingOperation};
 
     fn operation(prp: DVec3) -> ViewParameters {

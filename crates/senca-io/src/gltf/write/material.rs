@@ -98,7 +98,7 @@ struct MaterialWriter<'a> {
 
 impl MaterialWriter<'_> {
     fn json(&mut self, material: &Material) -> Value {
-        let reflection = metallic_roughness(material);
+        let reflection = material.to_metallic_roughness();
         let mut json = named(&material.name);
         set(&mut json, "pbrMetallicRoughness", self.reflection(&reflection));
         for (key, texture, factor) in [
@@ -227,27 +227,6 @@ impl MaterialWriter<'_> {
 /// Components in [0, 1].
 fn unit(color: LinearRgb) -> [f32; 3] {
     color.to_array().map(|v| if v.is_finite() { v.clamp(0.0, 1.0) } else { 0.0 })
-}
-
-/// The material's reflection, or the nearest to its Phong coefficients: the highlight of width n has
-/// the roughness whose microfacets spread as far (alpha^2 = 2 / (n + 2), Walter et al. 2007, with
-/// alpha = roughness^2 as in glTF).
-fn metallic_roughness(material: &Material) -> MetallicRoughness {
-    match &material.reflection {
-        Reflection::MetallicRoughness(m) => m.clone(),
-        Reflection::Phong(p) => {
-            let shiny = p.specular.max_component() > 0.0;
-            let roughness = if shiny { (2.0 / (p.exponent.max(0.0) + 2.0)).sqrt().sqrt() } else { 1.0 };
-            MetallicRoughness {
-                base_color: p.diffuse,
-                alpha: p.alpha,
-                metallic: 0.0,
-                roughness,
-                base_color_texture: p.texture,
-                metallic_roughness_texture: None,
-            }
-        }
-    }
 }
 
 /// A picture as PNG, with 8 bits a channel. Floats are encoded as sRGB unless they are data.

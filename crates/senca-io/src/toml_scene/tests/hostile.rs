@@ -96,6 +96,13 @@ fn long_lists_stay_in_proportion() {
     try_read(format!("[[object]]\nshape = 'mesh'\npoints = [{points}]\nfaces = [{faces}]").as_bytes());
     try_read(format!("[texture.t]\ntexels = [[{zeros}]]").as_bytes());
     try_read("[[object]]\n".repeat(20_000).as_bytes());
+    let moved: String = (0..10_000)
+        .map(|i| {
+            let keys = "property = 'scale'\ntimes = [0]\nvalues = [1]";
+            format!("[[object]]\nname = 'o{i}'\n[[animation]]\nname = 'a{i}'\nnode = 'o{i}'\n{keys}\n")
+        })
+        .collect();
+    try_read(moved.as_bytes());
     let keys: String = (0..20_000).map(|i| format!("key{i} = 1\n")).collect();
     try_read(keys.as_bytes());
 }
