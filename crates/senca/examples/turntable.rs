@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::Path;
 
 use senca::io::images::{PictureFormat, PictureOptions, encode};
-use senca::io::{read_scene_file, write_file};
+use senca::io::{load, write_file};
 use senca::math::glam::DVec3;
 use senca::{LookAt, Settings, Viewpoint, render};
 
@@ -14,7 +14,7 @@ const SIDES: u32 = 8;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).ok_or("which model? give its file")?;
-    let scene = read_scene_file(Path::new(&path))?;
+    let scene = load(Path::new(&path))?;
 
     let bounds = scene.bounds();
     let distance = 1.8 * bounds.diagonal().max(1e-6);

@@ -354,7 +354,7 @@ fn pictures_are_converted_too() {
     assert_exit(&run_in(folder.path(), &["convert", "cube.png", "cube.bmp"]), 0, "");
     assert!(std::fs::read(folder.path().join("cube.bmp")).expect("a picture").starts_with(b"BM"));
     assert_exit(&run_in(folder.path(), &["convert", "cube.obj", "other.png"]), 1, "senca render");
-    assert_exit(&run_in(folder.path(), &["render", "cube.png", "-o", "a.png"]), 1, "known format");
+    assert_exit(&run_in(folder.path(), &["render", "cube.png", "-o", "a.png"]), 1, "is a picture");
 }
 
 #[test]
