@@ -71,8 +71,12 @@ fn transform(mesh: &mut Mesh, world_from_object: &DMat4) {
     }
 }
 
-/// All meshes of `scene` as one of polygons, in world coordinates.
-pub(crate) fn combined(scene: &Scene, settings: &TessellationSettings) -> Result<Mesh, WriteError> {
+/// All geometries that `scene` shows as one mesh of polygons, in world coordinates; each surface of
+/// each instance is a surface of the mesh.
+///
+/// # Errors
+/// When a shape has no mesh, or a mesh does not hold together or is not finite.
+pub fn combined(scene: &Scene, settings: &TessellationSettings) -> Result<Mesh, WriteError> {
     let mut all = Mesh::default();
     for placed in placed_meshes(scene, settings)? {
         let mesh = &*placed.mesh;

@@ -18,7 +18,6 @@ mod normals;
 pub mod obj;
 mod output;
 pub mod ply;
-mod scene_file;
 pub mod stl;
 pub mod svg;
 mod text;
@@ -29,8 +28,6 @@ pub use detect::{Format, detect};
 pub use error::{Location, ReadError, WriteError};
 use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
+pub use flatten::combined as combined_mesh;
 pub use load::{load, load_bytes, load_bytes_with_hints, load_with_hints, save};
 pub use output::{write_file, write_file_while};
-pub use scene_file::{
-    SceneFormat, read_scene, read_scene_and_hints, read_scene_file, read_scene_file_and_hints,
-};

@@ -4,13 +4,13 @@
 //! crates of their own, reachable as modules here: [`math`], [`scene`], [`io`], [`shading`],
 //! [`raster`] and [`pipeline`].
 //!
-//! [`render`] draws a scene in one call; [`io::read_scene_file`] reads one from a file of any format:
+//! [`render`] draws a scene in one call; [`io::load`] reads one from a file of any format:
 //!
 //! ```no_run
 //! use senca::io::images::{PictureFormat, PictureOptions, encode};
 //! use senca::{Settings, io, render};
 //!
-//! let scene = io::read_scene_file("teapot.toml".as_ref())?;
+//! let scene = io::load("teapot.toml".as_ref())?;
 //! let (image, _) = render(&scene, &Settings::default())?;
 //! let png = encode(&image, PictureFormat::Png, &PictureOptions::default())?;
 //! io::write_file("teapot.png".as_ref(), &png)?;

@@ -23,12 +23,13 @@ pub fn render_svg(
     control: &Control<'_>,
 ) -> Result<(String, [u32; 2], Report), Error> {
     let start = Instant::now();
-    let prepared = prepare(scene, settings)?;
+    let mut prepared = prepare(scene, settings)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
-    let mut drawing = drawing_settings(&prepared, settings);
-    if !drawing.shading.is_lines() {
-        drawing.shading = Shading::Wire;
+    let mut wish = settings.clone();
+    if !wish.drawing.shading.is_lines() {
+        wish.drawing.shading = Shading::Wire;
     }
+    let drawing = drawing_settings(&mut prepared, &wish);
     let [width, height] = prepared.size;
     let find = if drawing.shading == Shading::HiddenLine { hidden_line_segments } else { wire_segments };
     let segments = find(&prepared.scene, &prepared.view, &drawing, width, height)?;
@@ -41,7 +42,7 @@ pub fn render_svg(
     let svg = encode(&Drawing {
         corner: [crop.x, crop.y].map(f64::from),
         size: [crop.width, crop.height].map(f64::from),
-        background: paper(drawing.background.unwrap_or(prepared.scene.background)),
+        background: drawing.background.and_then(paper),
         line_width: f64::from(drawing.wire.width),
         lines: segments.iter().map(line).collect(),
     });

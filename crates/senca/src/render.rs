@@ -22,7 +22,23 @@ pub struct Report {
 /// Draws `scene` into a new picture.
 ///
 /// A scene without a camera is framed whole, one without light gets some, one without a background
-/// is seen before a quiet grey (before white in line drawings).
+/// is seen before a quiet grey; lines are drawn on white unless the settings say otherwise.
+///
+/// ```
+/// use senca::scene::{Scene, Shape};
+/// use senca::{Settings, render};
+///
+/// let scene = Scene::of_shape("ball", Shape::Sphere { radius: 1.0 });
+/// let settings = Settings { size: Some([64, 48]), ..Settings::default() };
+/// let (image, report) = render(&scene, &settings)?;
+///
+/// // The ball is lit in the middle; the corner shows the background, which is bluish.
+/// let (middle, corner) = (image.color(32, 24), image.color(0, 0));
+/// assert!(middle.r == middle.b && middle.r > 0.1);
+/// assert!(corner.b > corner.r);
+/// assert!(report.drawing.triangles_drawn > 0);
+/// # Ok::<(), senca::Error>(())
+/// ```
 ///
 /// # Errors
 /// See [`Error`].
@@ -42,9 +58,9 @@ pub fn render_with(
     control: &Control<'_>,
 ) -> Result<(Image, Report), Error> {
     let start = Instant::now();
-    let prepared = prepare(scene, settings)?;
+    let mut prepared = prepare(scene, settings)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
-    let drawing = drawing_settings(&prepared, settings);
+    let drawing = drawing_settings(&mut prepared, settings);
     let [width, height] = prepared.size;
     let mut image = Image::new(width, height, [0.0; 4]);
     let report = senca_pipeline::render_with(&prepared.scene, &prepared.view, &drawing, &mut image, control)?;
@@ -55,12 +71,22 @@ pub fn render_with(
     Ok((image, Report { prepare_seconds, drawing: report }))
 }
 
-/// The pipeline's settings, with the crop and a background for a scene that has none.
-pub(crate) fn drawing_settings(prepared: &Prepared<'_>, settings: &Settings) -> senca_pipeline::Settings {
+/// The pipeline's settings, with the crop and a background: the caller's, white paper for line
+/// drawings, the scene's, or a quiet grey, in this order.
+pub(crate) fn drawing_settings(prepared: &mut Prepared<'_>, settings: &Settings) -> senca_pipeline::Settings {
     let mut drawing = senca_pipeline::Settings { crop: settings.crop, ..settings.drawing };
-    if drawing.background.is_none() && prepared.scene.background == Background::None {
-        drawing.background = Some(default_background(drawing.shading.is_lines()));
+    let of_scene = prepared.scene.background;
+    let lines = drawing.shading.is_lines();
+    let background = match drawing.background {
+        Some(wish) => wish,
+        None if lines || of_scene == Background::None => default_background(lines),
+        None => of_scene,
+    };
+    // The pipeline lets the scene speak first.
+    if of_scene != Background::None && of_scene != background {
+        prepared.scene.to_mut().background = Background::None;
     }
+    drawing.background = Some(background);
     drawing
 }
 
@@ -72,4 +98,60 @@ fn cut_out(image: &Image, crop: &senca_pipeline::Crop) -> Image {
         row.copy_from_slice(&image.row(crop.y + y as u32)[columns.clone()]);
     }
     part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use senca_math::LinearRgb;
+    use senca_pipeline::{Crop, Shading};
+    use senca_scene::Shape;
+
+    const RED: LinearRgb = LinearRgb::new(1.0, 0.0, 0.0);
+
+    fn ball() -> Scene {
+        Scene::of_shape("ball", Shape::Sphere { radius: 1.0 })
+    }
+
+    fn settings(width: u32, height: u32) -> Settings {
+        Settings { size: Some([width, height]), ..Settings::default() }
+    }
+
+    #[test]
+    fn the_callers_background_goes_before_the_scenes() {
+        let scene = Scene { background: Background::Color(LinearRgb::BLACK), ..ball() };
+        let corner = |settings: &Settings| render(&scene, settings).expect("a picture").0.pixel(0, 0);
+        let mut wish = settings(32, 32);
+        assert_eq!(corner(&wish), [0.0, 0.0, 0.0, 1.0]);
+        wish.drawing.background = Some(Background::Color(RED));
+        assert_eq!(corner(&wish), [1.0, 0.0, 0.0, 1.0]);
+        wish.drawing.background = Some(Background::None);
+        assert_eq!(corner(&wish)[3], 0.0);
+        wish.drawing.background = None;
+        wish.drawing.shading = Shading::Wire;
+        assert_eq!(corner(&wish), [1.0; 4], "lines are drawn on paper");
+    }
+
+    #[test]
+    fn a_cut_out_equals_that_part_of_the_whole() {
+        let (whole, _) = render(&ball(), &settings(60, 40)).expect("a picture");
+        let crop = Crop { x: 25, y: 11, width: 17, height: 9 };
+        let wish = Settings { crop: Some(crop), ..settings(60, 40) };
+        let (part, _) = render(&ball(), &wish).expect("a picture");
+        assert_eq!((part.width(), part.height()), (17, 9));
+        for y in 0..9 {
+            assert_eq!(part.row(y), &whole.row(11 + y)[25..42], "row {y}");
+        }
+    }
+
+    #[test]
+    fn a_scene_without_camera_and_light_is_seen_whole_and_lit() {
+        let (image, _) = render(&ball(), &settings(101, 101)).expect("a picture");
+        let is_ball = |p: &[f32; 4]| p[0] == p[2];
+        assert!(is_ball(&image.pixel(50, 50)) && image.pixel(50, 50)[0] > 0.1);
+        let edges = (0..101).flat_map(|i| [(i, 0), (i, 100), (0, i), (100, i)]);
+        assert!(edges.into_iter().all(|(x, y)| !is_ball(&image.pixel(x, y))), "the ball touches no side");
+        let covered = image.pixels().iter().filter(|p| is_ball(p)).count();
+        assert!(covered > 101 * 101 / 2, "{covered} pixels of {}", 101 * 101);
+    }
 }

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use common::{run_in, senca_in, told};
+use common::{run_in, sample, senca_in, told};
 use serde_json::Value;
 
 const CUBE_OBJ: &str = "\
@@ -282,9 +282,7 @@ fn a_cut_out_is_that_part_of_the_whole_picture() {
     };
     let whole = render(&[], "whole.pfm");
     let part = render(&["--crop", "30,20,25,13"], "part.pfm");
-    let header = |width: usize, height: usize| format!("PF\n{width} {height}\n-1.0\n").len();
     let (whole, part) = (&whole[whole.len() - 80 * 60 * 12..], &part[part.len() - 25 * 13 * 12..]);
-    assert!(header(80, 60) > 0);
     // Rows of a PFM run from the bottom.
     for row in 0..13 {
         let whole_row = 60 - 1 - (20 + 12 - row);
@@ -323,6 +321,129 @@ fn models_survive_conversion_between_all_formats() {
             let info = json(&run_in(folder.path(), &["info", back, "--json"]).stdout);
             assert_eq!(info["triangles"], 12, "{name} to {back}: {info}");
             assert_eq!(info["bounds"], serde_json::json!([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]));
+        }
+    }
+}
+
+#[test]
+fn the_patch_of_1991_becomes_the_polygons_of_1991() {
+    let folder = folder();
+    let patch = sample("classic/patch.bez").display().to_string();
+    let arguments = ["convert", &patch, "out.dat", "--steps", "4,4", "--epsilon", "0.05"];
+    assert_exit(&run_in(folder.path(), &arguments), 0, "");
+    let numbers = |path: &Path| -> Vec<f64> {
+        let text = std::fs::read_to_string(path).expect("a text");
+        text.split_whitespace().map(|w| w.parse().expect("a number")).collect()
+    };
+    assert_eq!(numbers(&folder.path().join("out.dat")), numbers(&sample("classic/patch.dat")));
+    let teapot = sample("classic/teapot.bez").display().to_string();
+    for (steps, more, header) in
+        [("4", &[][..], "529 512 5"), ("4", &["--as-printed"], "530 512 5"), ("8", &[], "2081 2048 5")]
+    {
+        let arguments = [&["convert", &teapot, "t.dat", "--steps", steps], more].concat();
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        let text = std::fs::read_to_string(folder.path().join("t.dat")).expect("a text");
+        assert_eq!(text.lines().next(), Some(header), "{steps} {more:?}");
+    }
+}
+
+#[test]
+fn pictures_are_converted_too() {
+    let folder = folder();
+    assert_exit(&run_in(folder.path(), &["render", "cube.obj", "--size", "9x7"]), 0, "");
+    assert_exit(&run_in(folder.path(), &["convert", "cube.png", "cube.bmp"]), 0, "");
+    assert!(std::fs::read(folder.path().join("cube.bmp")).expect("a picture").starts_with(b"BM"));
+    assert_exit(&run_in(folder.path(), &["convert", "cube.obj", "other.png"]), 1, "senca render");
+    assert_exit(&run_in(folder.path(), &["render", "cube.png", "-o", "a.png"]), 1, "is a picture");
+}
+
+#[test]
+fn view_matrices_are_those_of_the_book() {
+    let folder = folder();
+    let view = sample("views/b.view").display().to_string();
+    let done = run_in(folder.path(), &["view-matrix", &view, "--json"]);
+    assert_exit(&done, 0, "");
+    let matrices = json(&done.stdout);
+    let names: Vec<_> = matrices.as_object().expect("an object").keys().cloned().collect();
+    assert_eq!(names, ["T", "T1", "T2", "T3", "T4", "T5", "T6"]);
+    let expected = [
+        [0.5, 0.0, 0.0, 0.0],
+        [0.0, 0.5, 0.0, 0.0],
+        [0.0, 0.0, 1.0 / 6.0, -0.1],
+        [0.0, 0.0, -1.0 / 6.0, 0.5],
+    ];
+    for (row, wanted) in expected.iter().enumerate() {
+        for (column, wanted) in wanted.iter().enumerate() {
+            let found = matrices["T"][row][column].as_f64().expect("a number");
+            assert!((found - wanted).abs() < 1e-12, "{row}, {column}: {found}");
+        }
+    }
+    let done = run_in(folder.path(), &["view-matrix", &view]);
+    assert!(String::from_utf8_lossy(&done.stdout).contains("0.166667"), "{done:?}");
+    std::fs::write(folder.path().join("bad.view"), "view = B\nVRP = 0 0\n").expect("a file");
+    assert_exit(&run_in(folder.path(), &["view-matrix", "bad.view"]), 1, "senca: bad.view:2:");
+}
+
+#[test]
+fn pictures_may_be_very_wide_or_high() {
+    let folder = folder();
+    for (size, expected) in [("16384x1", (16384, 1)), ("1x16384", (1, 16384)), ("65404x2", (65404, 2))] {
+        let arguments = ["render", "cube.obj", "-o", "a.png", "--size", size];
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        assert_eq!(size_of_png(&std::fs::read(folder.path().join("a.png")).expect("a picture")), expected);
+    }
+}
+
+#[test]
+fn the_scenes_own_wishes_hold_unless_options_say_otherwise() {
+    let folder = folder();
+    let teapot = sample("teapot.toml").display().to_string();
+    let size = |more: &[&str]| {
+        let arguments = [&["render", &teapot, "-o", "a.png"], more].concat();
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        size_of_png(&std::fs::read(folder.path().join("a.png")).expect("a picture"))
+    };
+    assert_eq!(size(&[]), (800, 600));
+    assert_eq!(size(&["--size", "30x20"]), (30, 20));
+}
+
+#[test]
+fn time_moves_what_is_animated() {
+    let folder = folder();
+    let scene = sample("animation.toml").display().to_string();
+    let at = |time: &str| {
+        let arguments = ["render", &scene, "-o", "a.ppm", "--size", "48x36", "--time", time];
+        assert_exit(&run_in(folder.path(), &arguments), 0, "");
+        std::fs::read(folder.path().join("a.ppm")).expect("a picture")
+    };
+    assert_ne!(at("0"), at("1.5"));
+    assert_eq!(at("1.5"), at("1.5"));
+}
+
+#[test]
+fn warnings_are_told_unless_quiet_is_asked_for() {
+    let folder = folder();
+    let text = format!("mtllib missing.mtl\n{CUBE_OBJ}");
+    std::fs::write(folder.path().join("warn.obj"), text).expect("a file");
+    let arguments = ["render", "warn.obj", "--size", "8x8"];
+    assert_exit(&run_in(folder.path(), &arguments), 0, "senca: warn.obj: warning: ");
+    let done = run_in(folder.path(), &[&arguments[..], &["--quiet"]].concat());
+    assert_exit(&done, 0, "");
+    assert!(done.stderr.is_empty(), "{}", told(&done));
+}
+
+#[test]
+fn numbers_that_are_none_give_a_picture_or_an_error_and_never_a_fault() {
+    let folder = folder();
+    for (i, points) in ["v nan 0 0", "v inf 0 0", "v 1e38 0 0", "v -1e-40 0 0", "v 0 0 0"].iter().enumerate()
+    {
+        let name = format!("odd{i}.obj");
+        let text = format!("{points}\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 1\n");
+        std::fs::write(folder.path().join(&name), text).expect("a file");
+        for shading in ["material", "gouraud", "wire-normals", "hidden-line"] {
+            let arguments = ["render", &name, "-o", "a.png", "--size", "20x20", "--shading", shading];
+            let done = run_in(folder.path(), &arguments);
+            assert!(matches!(done.status.code(), Some(0 | 1)), "{name} {shading}: {}", told(&done));
         }
     }
 }

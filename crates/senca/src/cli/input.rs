@@ -5,7 +5,7 @@ use std::path::Path;
 
 use senca::Scene;
 use senca::io::toml_scene::SceneFile;
-use senca::io::{Limits, Location, NoFiles, ReadError, read_scene_file_and_hints};
+use senca::io::{Limits, Location, ReadError, load_with_hints};
 
 use super::Failure;
 use super::output::is_standard;
@@ -20,11 +20,16 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
 
 /// The scene in the file at `path` with what it says about its picture; `-` is standard input.
 pub(crate) fn read_scene_and_hints(path: &Path) -> Result<SceneFile, Failure> {
-    if is_standard(path) {
-        let (name, bytes) = read_bytes(path)?;
-        return Ok(senca::io::read_scene_and_hints(&name, &bytes, &NoFiles)?);
+    refuse_folder(path)?;
+    Ok(load_with_hints(path)?)
+}
+
+/// Says of a folder what it is, which not every system does.
+fn refuse_folder(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::input(format!("{}: is a folder; a file is needed", path.display())));
     }
-    Ok(read_scene_file_and_hints(path)?)
+    Ok(())
 }
 
 /// Name for messages and content of the text file at `path`; `-` is standard input.
@@ -42,10 +47,8 @@ pub(crate) fn read_bytes(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     if is_standard(path) {
         return Ok((STANDARD_INPUT.to_owned(), read_standard_input()?));
     }
+    refuse_folder(path)?;
     let name = path.display().to_string();
-    if path.is_dir() {
-        return Err(Failure::input(format!("{name}: is a folder; a file is needed")));
-    }
     let bytes = std::fs::read(path).map_err(|e| Failure::input(format!("{name}: {e}")))?;
     Ok((name, bytes))
 }

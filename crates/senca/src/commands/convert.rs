@@ -1,13 +1,11 @@
 //! `senca convert`: a model or a picture into another format.
 
-mod merge;
-
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 use senca::io::gltf::{WriteSettings, write_glb, write_gltf};
 use senca::io::images::{PictureFormat, PictureOptions, decode_picture, encode};
-use senca::io::{Limits, SceneFormat, classic, obj, ply, stl};
+use senca::io::{Format as Content, Limits, classic, combined_mesh, detect, obj, ply, stl};
 use senca::scene::{
     BezierPatch, PatchConversion, Scene, Shape, TessellationSettings, Tolerance, Warning, patch_to_polygons,
 };
@@ -131,7 +129,7 @@ fn unknown(what: &str) -> Failure {
 
 fn picture(input: &Path, format: PictureFormat) -> Result<Files, Failure> {
     let (name, bytes) = read_bytes(input)?;
-    if SceneFormat::detect(&name, &bytes).is_some() {
+    if detect(&bytes, None).is_some_and(|content| content != Content::Picture) {
         let message = "is a scene or a model; 'senca render' makes a picture of it";
         return Err(Failure::input(format!("{name}: {message}")));
     }
@@ -185,8 +183,7 @@ fn encoded(scene: &Scene, format: Format, arguments: &Arguments) -> Result<Files
         Format::Ply if arguments.ascii => only(ply::write(scene, ply::PlyEncoding::Text, &settings)?),
         Format::Ply => only(ply::write(scene, ply::PlyEncoding::LittleEndian, &settings)?),
         Format::Object1991 | Format::Picture(_) => {
-            let mesh = merge::merged(scene, &settings).map_err(Failure::input)?;
-            only(classic::write_object(&mesh)?)
+            only(classic::write_object(&combined_mesh(scene, &settings)?)?)
         }
     })
 }
