@@ -75,12 +75,13 @@ pub(crate) fn slots(shading: &Shading<'_>, path: ColorPath, stride: usize) -> Ve
     match (shading, path) {
         (_, ColorPath::Plain) => (0..stride.min(MAX_VARYINGS)).collect(),
         (Shading::Fixed { color, texture }, ColorPath::Constant(_) | ColorPath::Varying { .. }) => {
-            let of_color = match *color {
-                ColorSource::Constant(_) => 0..0,
-                ColorSource::Rgb { first } => first..first + 3,
-                ColorSource::Rgba { first } => first..first + 4,
+            let (first, count) = match *color {
+                ColorSource::Constant(_) => (0, 0),
+                ColorSource::Rgb { first } => (first, 3),
+                ColorSource::Rgba { first } => (first, 4),
             };
-            of_color.chain(texture.iter().flat_map(|t| [t.coords, t.coords + 1])).collect()
+            let of_color = (0..count).map(|k| first.saturating_add(k));
+            of_color.chain(texture.iter().flat_map(|t| [t.coords, t.coords.saturating_add(1)])).collect()
         }
         _ => Vec::new(),
     }

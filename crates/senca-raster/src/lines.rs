@@ -200,8 +200,9 @@ impl<'a, 't> Sink<'a, 't> {
             ceil_div(corner, i64::from(SUB)) + i64::from(origin)
         };
         let (x, y) = (first(at.x, self.map.origin[0]), first(at.y, self.map.origin[1]));
-        for row in y..y + side {
-            for column in x..x + side {
+        let b = self.map.bounds;
+        for row in y.max(i64::from(b.y0))..(y + side).min(i64::from(b.y1)) {
+            for column in x.max(i64::from(b.x0))..(x + side).min(i64::from(b.x1)) {
                 self.fragment(column, row, at.z);
             }
         }

@@ -59,11 +59,11 @@ pub(crate) fn shade_plain(
 }
 
 fn color_of(color: &ColorSource, varyings: &[[f32; LANES]], lane: usize) -> [f32; 4] {
-    let at = |k: usize| varyings.get(k).map_or(0.0, |v| v[lane]);
+    let at = |first: usize, k: usize| varyings.get(first.saturating_add(k)).map_or(0.0, |v| v[lane]);
     match *color {
         ColorSource::Constant(rgba) => rgba,
-        ColorSource::Rgb { first } => [at(first), at(first + 1), at(first + 2), 1.0],
-        ColorSource::Rgba { first } => [at(first), at(first + 1), at(first + 2), at(first + 3)],
+        ColorSource::Rgb { first: f } => [at(f, 0), at(f, 1), at(f, 2), 1.0],
+        ColorSource::Rgba { first: f } => [at(f, 0), at(f, 1), at(f, 2), at(f, 3)],
     }
 }
 
