@@ -14,10 +14,13 @@
 //! 5. Colours behind a position (`v x y z r g b`) are sRGB, as painting programs write them, either
 //!    0 to 1 or 0 to 255 throughout.
 //! 6. A file of nothing but positions is a cloud of dots.
-//! 7. Statements that only other renderers need are passed over; ones that change the form and are
+//! 7. Free-form surfaces in Bézier and B-spline bases, rational or not, become patches and NURBS; other
+//!    bases, curves and trims give a warning.
+//! 8. Statements that only other renderers need are passed over; ones that change the form and are
 //!    not known give a warning.
 
 mod build;
+mod freeform;
 mod parse;
 #[cfg(test)]
 mod tests;

@@ -117,12 +117,14 @@ pub fn linear_from_srgb(v: f32) -> f32 {
 
 impl Add for LinearRgb {
     type Output = Self;
+    #[inline]
     fn add(self, o: Self) -> Self {
         Self::new(self.r + o.r, self.g + o.g, self.b + o.b)
     }
 }
 
 impl AddAssign for LinearRgb {
+    #[inline]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
@@ -130,6 +132,7 @@ impl AddAssign for LinearRgb {
 
 impl Sub for LinearRgb {
     type Output = Self;
+    #[inline]
     fn sub(self, o: Self) -> Self {
         Self::new(self.r - o.r, self.g - o.g, self.b - o.b)
     }
@@ -138,6 +141,7 @@ impl Sub for LinearRgb {
 /// Component by component: light times reflectance.
 impl Mul for LinearRgb {
     type Output = Self;
+    #[inline]
     fn mul(self, o: Self) -> Self {
         Self::new(self.r * o.r, self.g * o.g, self.b * o.b)
     }
@@ -145,12 +149,14 @@ impl Mul for LinearRgb {
 
 impl Mul<f32> for LinearRgb {
     type Output = Self;
+    #[inline]
     fn mul(self, s: f32) -> Self {
         Self::new(self.r * s, self.g * s, self.b * s)
     }
 }
 
 impl MulAssign<f32> for LinearRgb {
+    #[inline]
     fn mul_assign(&mut self, s: f32) {
         *self = *self * s;
     }

@@ -25,6 +25,7 @@ impl PixelGrid {
     }
 
     /// `(x w, y w, w)` in pixels, y down, of a point given in the space that `clip_from` starts from.
+    #[inline]
     pub(crate) fn homogeneous(&self, clip_from: &DMat4, point: DVec3) -> DVec3 {
         let clip = *clip_from * point.extend(1.0);
         DVec3::new((clip.w + clip.x) * self.half.x, (clip.w - clip.y) * self.half.y, clip.w)

@@ -123,6 +123,9 @@ struct Corners<S: Simd> {
 }
 
 impl Batch {
+    /// Memory of its varyings.
+    pub(crate) const BOXED_BYTES: usize = 2 * MAX_VARYINGS * size_of::<PlaneLanes>();
+
     /// Puts a triangle into the next lane; returns the lane. Varyings are the caller's to fill in.
     #[inline(always)]
     pub(crate) fn push(&mut self, v: &[ScreenVertex; 3], id: u32) -> usize {

@@ -12,8 +12,15 @@ use crate::setup::{Bounds, HALF, SUB_BITS, ScreenMap, ScreenVertex, double_area,
 pub(crate) const TILE_BITS: u32 = 6;
 /// Side of a tile in pixels.
 pub(crate) const TILE: usize = 1 << TILE_BITS;
-/// Triangles binned together.
+/// Vertices projected together, and fewest triangles binned together.
 pub(crate) const RUN: usize = 4096;
+
+/// Triangles binned together: more on large targets, so that the starts a run keeps, one per tile,
+/// stay below 16 bytes per triangle.
+pub(crate) fn run_length([columns, rows]: [usize; 2]) -> usize {
+    RUN.max(columns * rows / 4)
+}
+
 /// In a reference: the number is that of a piece made by clipping.
 const CUT: u32 = 1 << 31;
 
@@ -110,9 +117,19 @@ impl Run {
         }
     }
 
+    /// Bytes of memory held.
+    pub(crate) fn bytes(&self) -> usize {
+        self.references.capacity() * size_of::<Reference>()
+            + self.starts.capacity() * size_of::<u32>()
+            + self.boxes.capacity() * size_of::<(Reference, [u16; 4])>()
+            + self.pieces.capacity() * size_of::<Piece>()
+            + self.piece_varyings.capacity() * size_of::<f32>()
+    }
+
     /// Bins the triangles of `range`.
     pub(crate) fn fill(&mut self, input: &BinInput<'_>, range: std::ops::Range<usize>) {
         self.boxes.clear();
+        self.boxes.reserve_exact(range.len());
         self.pieces.clear();
         self.piece_varyings.clear();
         self.counters = Counters::default();

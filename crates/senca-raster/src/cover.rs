@@ -110,7 +110,7 @@ pub(crate) struct TileEdges {
 
 impl TileEdges {
     /// Edges about the pixel (`x`, `y`), counted from the origin of the fixed-point raster, for the
-    /// pixels of `area`, counted from that pixel and widened to whole vectors. `None` when the triangle
+    /// pixels of `area`, counted from that pixel and widened to whole blocks. `None` when the triangle
     /// misses them all.
     #[inline(always)]
     pub(crate) fn new(v: &[ScreenVertex; 3], [x, y]: [i32; 2], area: &Bounds) -> Option<Self> {
@@ -124,7 +124,7 @@ impl TileEdges {
             let c = (value - i64::from(!owns)) >> crate::setup::SUB_BITS;
             let (dx, dy) = (i64::from(-ey), i64::from(ex));
             let (x0, x1) = (dx * i64::from(area.x0 & !7), dx * i64::from((area.x1 - 1) | 7));
-            let (y0, y1) = (dy * i64::from(area.y0 & !1), dy * i64::from((area.y1 - 1) | 1));
+            let (y0, y1) = (dy * i64::from(area.y0 & !7), dy * i64::from((area.y1 - 1) | 7));
             if c + x0.max(x1) + y0.max(y1) < 0 {
                 return None;
             }

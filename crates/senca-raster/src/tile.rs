@@ -109,6 +109,9 @@ fn row_range(width: usize, tile_x: usize, block: usize, y: usize) -> std::ops::R
 }
 
 impl TileBuffer {
+    /// Memory of its planes.
+    pub(crate) const BYTES: usize = 7 * 4 * TILE * TILE;
+
     /// Brings a block in, from the target or freshly cleared.
     #[cold]
     #[inline(never)]
@@ -235,13 +238,23 @@ impl Rows {
                 clear.into_iter().for_each(|v| row.fill(v));
                 continue;
             }
-            for (bx, to) in row.chunks_mut(8).enumerate() {
+            let (whole, rest) = row.as_chunks_mut::<8>();
+            let last = whole.len();
+            for (bx, to) in whole.iter_mut().enumerate() {
                 if present >> bx & 1 == 1 {
-                    let from = get(y / 8 * BLOCKS + bx, y % 8 * 8);
-                    store_row(to, &from);
+                    *to = get(y / 8 * BLOCKS + bx, y % 8 * 8);
                 } else if let Some(v) = clear {
-                    to.fill(v);
+                    *to = [v; 8];
                 }
+            }
+            if rest.is_empty() {
+                continue;
+            }
+            if present >> last & 1 == 1 {
+                let from = get(y / 8 * BLOCKS + last, y % 8 * 8);
+                rest.copy_from_slice(&from[..rest.len()]);
+            } else if let Some(v) = clear {
+                rest.fill(v);
             }
         }
     }
@@ -261,13 +274,5 @@ fn fetch_plane<T: Copy>(to: &mut Block<T>, plane: &[T], band: &Band<'_>, tile_x:
     for (y, row) in block_rows(band, block) {
         let from = &plane[row_range(band.width, tile_x, block, y)];
         to.as_flattened_mut()[row * 8..][..from.len()].copy_from_slice(from);
-    }
-}
-
-#[inline(always)]
-fn store_row<T: Copy>(to: &mut [T], from: &[T; 8]) {
-    match <&mut [T; 8]>::try_from(&mut *to) {
-        Ok(whole) => *whole = *from,
-        Err(_) => to.copy_from_slice(&from[..to.len()]),
     }
 }

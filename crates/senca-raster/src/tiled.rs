@@ -5,7 +5,7 @@ use crate::api::{
 };
 use crate::assemble::{varyings_of, vertex_count};
 use crate::batch::Batch;
-use crate::bin::{BinInput, RUN, Reference, Run, TILE};
+use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::target::{Clear, Target};
@@ -51,6 +51,16 @@ impl TiledRasterizer {
         self.settings
     }
 
+    /// Bytes of scratch memory held: for the largest draw so far, below 100 per triangle with its share
+    /// of the vertices, and about 150 000 per thread.
+    #[must_use]
+    pub fn scratch_bytes(&self) -> usize {
+        let per_thread = size_of::<Scratch>() + TileBuffer::BYTES + Batch::BOXED_BYTES;
+        self.vertices.capacity() * size_of::<ScreenVertex>()
+            + self.runs.iter().map(Run::bytes).sum::<usize>()
+            + self.scratch.len() * per_thread
+    }
+
     fn threads(&self) -> usize {
         match self.settings.threads {
             0 => rayon::current_num_threads(),
@@ -86,13 +96,14 @@ impl Rasterizer for TiledRasterizer {
             tiles,
         };
         let count = triangles.indices.len() / 3;
-        let runs = count.div_ceil(RUN);
+        let length = run_length(tiles);
+        let runs = count.div_ceil(length);
         if self.runs.len() < runs {
             self.runs.resize_with(runs, Run::default);
         }
         let jobs = self.runs[..runs].iter_mut().enumerate();
         let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
-            run.fill(&input, k * RUN..((k + 1) * RUN).min(count));
+            run.fill(&input, k * length..((k + 1) * length).min(count));
             run.counters
         });
         let mut counters = Counters::default();
@@ -171,11 +182,11 @@ impl TiledRasterizer {
     /// Projects the vertices the indices refer to; returns the number of the first.
     fn project(&mut self, p: &Primitives<'_>, map: &ScreenMap, threads: usize) -> usize {
         let count = vertex_count(p);
-        let (first, last) = p.indices.iter().fold((u32::MAX, 0), |(a, b), &i| (a.min(i), b.max(i)));
+        let first = p.indices.iter().fold(u32::MAX, |a, &i| a.min(i));
+        let last = p.indices.iter().fold(0, |a, &i| a.max(i));
         let end = (last as usize + 1).min(count);
         let first = (first as usize).min(end);
         let positions = &p.positions[first..end];
-        self.vertices.clear();
         self.vertices.resize(positions.len(), ScreenVertex::default());
         let jobs = positions.chunks(RUN).zip(self.vertices.chunks_mut(RUN)).collect();
         share(threads, jobs, |(from, to): (&[_], &mut [ScreenVertex])| {

@@ -266,3 +266,59 @@ fn hostile_triangles_do_no_harm() {
     );
     assert_eq!((c.primitives, c.invalid), (1, 1));
 }
+
+/// Rectangles whose sides fall inside blocks of 8 x 8 pixels, nearest first, then one behind them all.
+#[test]
+fn what_shows_past_the_rim_of_a_near_triangle_is_drawn() {
+    let size = [96u32, 96];
+    for shift in 0..8 {
+        let mut mesh = Mesh { positions: Vec::new(), varyings: Vec::new(), indices: Vec::new() };
+        let mut quad = |x0: f32, y0: f32, x1: f32, y1: f32, z: f32| {
+            let first = mesh.positions.len() as u32;
+            for (x, y) in [(x0, y0), (x1, y0), (x1, y1), (x0, y1)] {
+                let (x, y) = (x / size[0] as f32 * 2.0 - 1.0, 1.0 - y / size[1] as f32 * 2.0);
+                mesh.positions.push(Vec4::new(x, y, z, 1.0));
+                mesh.varyings.extend([z; 4]);
+            }
+            mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+        };
+        let s = shift as f32;
+        quad(s, s, 90.0 - s, 76.0 + s, 0.2);
+        quad(-400.0, 10.0 + s, 400.0, 21.0 + 2.0 * s, 0.1);
+        quad(10.0 + s, -400.0, 21.0 + 2.0 * s, 400.0, 0.15);
+        quad(-1000.0, -1000.0, 1000.0, 1000.0, 0.9);
+        quad(-1000.0, -900.0, 900.0, 1000.0, 0.5);
+        let state = State::default();
+        let (a, _) = draw(&mut ScanlineRasterizer, size, &mesh, &state, &Shading::vertex_rgb());
+        let (b, _) = draw(&mut TiledRasterizer::default(), size, &mesh, &state, &Shading::vertex_rgb());
+        assert!(bits(&a) == bits(&b), "shifted by {shift}");
+    }
+}
+
+/// A sheet of `cells * cells * 2` triangles over the target.
+fn sheet(cells: u32) -> Mesh {
+    let mut mesh = Mesh { positions: Vec::new(), varyings: Vec::new(), indices: Vec::new() };
+    let at = |i: u32| i as f32 / cells as f32 * 2.0 - 1.0;
+    for i in 0..(cells + 1) * (cells + 1) {
+        mesh.positions.push(Vec4::new(at(i % (cells + 1)), at(i / (cells + 1)), 0.5, 1.0));
+        mesh.varyings.extend([0.5; STRIDE]);
+    }
+    for i in 0..cells * cells {
+        let a = i / cells * (cells + 1) + i % cells;
+        mesh.indices.extend([a, a + 1, a + cells + 2, a, a + cells + 2, a + cells + 1]);
+    }
+    mesh
+}
+
+#[test]
+fn scratch_memory_is_bounded() {
+    for side in [512, 4096] {
+        let mesh = sheet(200);
+        let mut rasterizer = tiled(1, SimdLevel::new());
+        let mut depth = vec![1.0; (side * side) as usize];
+        let mut target = Target::new(side, side).and_then(|t| t.with_depth(&mut depth)).unwrap();
+        rasterizer.draw(&mut target, &mesh.primitives(), &State::default(), &Shading::None);
+        let per_triangle = (rasterizer.scratch_bytes() - 150_000) as f64 / 80_000.0;
+        assert!(per_triangle <= 100.0, "{per_triangle} bytes per triangle at {side}");
+    }
+}

@@ -4,7 +4,7 @@
 //! little ambient light. The key comes from the upper left, as drawing programs have it, the fill
 //! from the right without a highlight worth mentioning, the rim from behind above; so every side that
 //! can be seen is lit by one or two of them, differently. A white matt surface stays below full white
-//! whichever way it faces: ambient plus the largest sum of two lights is 0.98 (see the tests).
+//! whichever way it faces: ambient plus the largest sum of two lights is 0.96 (see the tests).
 
 use senca_math::LinearRgb;
 use senca_math::glam::{DMat3, DMat4, DVec3};
@@ -22,13 +22,13 @@ pub struct DefaultLights {
 
 /// Name, intensity, and direction in the camera's frame from the scene towards the light.
 const LIGHTS: [(&str, f32, DVec3); 3] = [
-    ("key", 0.80, DVec3::new(-0.5, 0.7, 0.8)),
-    ("fill", 0.22, DVec3::new(0.9, 0.1, 0.6)),
+    ("key", 0.85, DVec3::new(-0.6, 0.75, 0.65)),
+    ("fill", 0.20, DVec3::new(0.9, -0.2, 0.55)),
     ("rim", 0.35, DVec3::new(0.3, 0.8, -0.9)),
 ];
 
 /// Ambient light that goes with the default lights.
-const AMBIENT: f32 = 0.10;
+const AMBIENT: f32 = 0.07;
 
 /// The default lights for a camera.
 #[must_use]
@@ -109,8 +109,8 @@ mod tests {
                 }
             }
         }
-        assert!(brightest <= 0.985 && brightest > 0.8, "{brightest}");
-        assert!(darkest >= 0.1, "{darkest}");
+        assert!(brightest <= 0.96 && brightest > 0.8, "{brightest}");
+        assert!(darkest >= 0.069, "{darkest}");
     }
 
     #[test]

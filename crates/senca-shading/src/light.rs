@@ -115,6 +115,7 @@ impl ShadingLight {
         }
     }
 
+    #[inline]
     fn parallel(&self, position: Vec3) -> Option<Incident> {
         let share = match self.attenuation {
             Attenuation::None => 1.0,

@@ -78,6 +78,7 @@ pub fn reflected(normal: Vec3, to_light: Vec3) -> Vec3 {
 /// `max(v . r, 0)`, the cosine of the angle between the mirrored ray and the observer; 0 when the
 /// light is behind the surface. Unit vectors.
 #[must_use]
+#[inline]
 pub fn cos_reflection(normal: Vec3, to_light: Vec3, to_viewer: Vec3) -> f32 {
     let cos = normal.dot(to_light);
     if cos <= 0.0 {
@@ -89,6 +90,7 @@ pub fn cos_reflection(normal: Vec3, to_light: Vec3, to_viewer: Vec3) -> f32 {
 /// `Od cos(phi) + Os cos^n(alpha)`: the share of one light that goes to the observer. Cosines must
 /// not be negative.
 #[must_use]
+#[inline]
 pub fn phong_term(constants: &PhongConstants, cos_phi: f32, cos_alpha: f32) -> LinearRgb {
     let highlight = if cos_alpha > 0.0 { cos_alpha.powf(constants.exponent) } else { 0.0 };
     constants.diffuse * cos_phi + constants.specular * highlight

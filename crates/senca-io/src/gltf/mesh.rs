@@ -511,7 +511,7 @@ fn merge(document: &Document<'_>, groups: &[Group]) -> Result<Mesh, ReadError> {
 fn merge_targets(document: &Document<'_>, groups: &[Group], mesh: &mut Mesh) -> Result<(), ReadError> {
     let targets = groups.iter().map(|g| g.targets.len()).max().unwrap_or(0);
     // Groups without a target are filled with zeros, which no bytes bear out.
-    document.charge(&"morph targets", targets as u64 * mesh.points.len() as u64)?;
+    document.charge(&"morph targets", targets as u64 * (mesh.points.len() + groups.len()) as u64)?;
     for t in 0..targets {
         let of = |g: &'_ Group| -> usize { g.points.len() };
         let points = join(groups, |g| g.targets.get(t)?.points.as_ref(), of, Vec3::ZERO);

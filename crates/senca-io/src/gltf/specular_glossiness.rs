@@ -16,12 +16,23 @@ use super::material::Reader;
 /// Reflectance of a dielectric seen head-on, at an index of refraction of 1.5.
 const DIELECTRIC: f32 = 0.04;
 
+/// Conversions that are remembered; they are looked through one by one.
+const MAX_SHARED: usize = 256;
+
 /// One place of a specular-glossiness material.
-#[derive(Clone, Copy, Debug)]
-struct Coat {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Coat {
     diffuse: LinearRgb,
     specular: LinearRgb,
     glossiness: f32,
+}
+
+/// What two pictures were converted from, and the two they became: materials share them.
+pub(super) struct ConvertedTextures {
+    factor: Coat,
+    diffuse: Option<TextureRef>,
+    coat: TextureRef,
+    result: [TextureRef; 2],
 }
 
 /// Base colour, metallic and roughness.
@@ -39,7 +50,7 @@ pub(super) fn read(reader: &mut Reader<'_, '_>, json: &json::SpecularGlossiness)
     let name = "specularGlossinessTexture";
     let coat_texture = reader.texture(name, json.specular_glossiness_texture.as_deref(), ColorSpace::Srgb);
     if let Some(coat_texture) = coat_texture {
-        if let Some(textures) = convert_textures(reader, coat, diffuse_texture, coat_texture) {
+        if let Some(textures) = converted_textures(reader, coat, diffuse_texture, coat_texture) {
             let [base, metallic_roughness] = textures;
             return MetallicRoughness {
                 alpha,
@@ -87,6 +98,24 @@ fn metallic(diffuse: f32, specular: f32, rest: f32) -> f32 {
 /// Perceived brightness of a colour.
 fn brightness(c: LinearRgb) -> f32 {
     (0.299 * c.r * c.r + 0.587 * c.g * c.g + 0.114 * c.b * c.b).sqrt()
+}
+
+/// The pictures of [`convert_textures`], made once for all materials that ask for the same.
+fn converted_textures(
+    reader: &mut Reader<'_, '_>,
+    factor: Coat,
+    diffuse: Option<TextureRef>,
+    coat: TextureRef,
+) -> Option<[TextureRef; 2]> {
+    let same = |c: &&ConvertedTextures| c.factor == factor && c.diffuse == diffuse && c.coat == coat;
+    if let Some(known) = reader.textures.converted.iter().find(same) {
+        return Some(known.result);
+    }
+    let result = convert_textures(reader, factor, diffuse, coat)?;
+    if reader.textures.converted.len() < MAX_SHARED {
+        reader.textures.converted.push(ConvertedTextures { factor, diffuse, coat, result });
+    }
+    Some(result)
 }
 
 /// Base colour and metallic-roughness pictures of the two of the extension; `None` when these are

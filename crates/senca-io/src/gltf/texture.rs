@@ -11,6 +11,7 @@ use senca_scene::{ColorSpace, Filter, ImageData, ImageId, Texture, TextureImage,
 use super::document::Document;
 use super::json;
 use super::json::Whole;
+use super::specular_glossiness::ConvertedTextures;
 use crate::{Limits, ReadError, images};
 
 /// All pictures of a file together may have this many times the texels that one may have.
@@ -24,6 +25,8 @@ pub(super) struct Textures<'d> {
     known: BTreeMap<usize, Option<u32>>,
     /// What became of each picture, by where its bytes are.
     pictures: BTreeMap<Source<'d>, Option<u32>>,
+    /// Pictures made of others.
+    pub(super) converted: Vec<ConvertedTextures>,
     /// Texels that may still be decoded.
     texels_left: u64,
 }
@@ -42,6 +45,7 @@ impl<'d> Textures<'d> {
             images: Vec::new(),
             known: BTreeMap::new(),
             pictures: BTreeMap::new(),
+            converted: Vec::new(),
             texels_left: limits.image_texels.saturating_mul(TOTAL_TEXELS),
         }
     }

@@ -22,7 +22,10 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
     scene.warnings = std::mem::take(&mut soup.warnings).into_iter().map(Warning).collect();
     let materials = materials(&mut scene, &soup, files)?;
     finish_colors(&mut soup.colors);
-    let only_points = soup.face_count == 0 && soup.lines.is_empty() && soup.dots.is_empty();
+    let freeforms = std::mem::take(&mut soup.freeforms);
+    let object_names = soup.objects.clone();
+    let only_points =
+        freeforms.is_empty() && soup.face_count == 0 && soup.lines.is_empty() && soup.dots.is_empty();
     if only_points {
         let corner = |point| Corner { point, texcoord: NONE, normal: NONE };
         soup.dots = (0..soup.points.len() as u32).map(|point| (corner(point), 0)).collect();
@@ -35,6 +38,15 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
         let name = if part.name.is_empty() { scene.name.clone() } else { part.name };
         let shape = Shape::Mesh(part.mesh);
         let geometry = scene.add_geometry(Geometry { name: name.clone(), shape, material: None });
+        let node = scene.add_node(Node { name, geometry: Some(geometry), ..Node::default() });
+        scene.roots.push(node);
+    }
+    for freeform in freeforms {
+        let material = freeform.key.material.and_then(|name| materials.get(&name).copied());
+        let object = &object_names[freeform.key.object as usize];
+        let named = [object, &freeform.name].into_iter().find(|name| !name.is_empty()).cloned();
+        let name = named.unwrap_or_else(|| scene.name.clone());
+        let geometry = scene.add_geometry(Geometry { name: name.clone(), shape: freeform.shape, material });
         let node = scene.add_node(Node { name, geometry: Some(geometry), ..Node::default() });
         scene.roots.push(node);
     }
@@ -64,7 +76,8 @@ fn materials(
 ) -> Result<HashMap<String, MaterialId>, ReadError> {
     let mut ids = HashMap::new();
     let missing = crate::mtl::read_libraries(&soup.libraries, files, scene, &mut ids)?;
-    let used = soup.surfaces.iter().filter_map(|key| key.material.as_ref());
+    let keys = soup.surfaces.iter().chain(soup.freeforms.iter().map(|freeform| &freeform.key));
+    let used = keys.filter_map(|key| key.material.as_ref());
     for name in used {
         if ids.contains_key(name) {
             continue;

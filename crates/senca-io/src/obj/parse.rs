@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use senca_scene::math::glam::{Vec2, Vec3, Vec4};
 
+use super::freeform::{Basis, Freeform, FreeformSurface};
 use crate::ReadError;
 use crate::text::Cursor;
 
@@ -117,6 +118,8 @@ pub(super) struct Soup {
     pub(super) points: Vec<Vec3>,
     /// Colours as written, with alpha; empty or as long as `points`.
     pub(super) colors: Vec<Vec4>,
+    /// Weights of control points; missing ones are 1.
+    pub(super) weights: Vec<f32>,
     pub(super) texcoords: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) corners: Corners,
@@ -128,6 +131,7 @@ pub(super) struct Soup {
     pub(super) lines: Vec<([Corner; 2], u32)>,
     /// Dots with the object they belong to.
     pub(super) dots: Vec<(Corner, u32)>,
+    pub(super) freeforms: Vec<FreeformSurface>,
     pub(super) objects: Vec<String>,
     pub(super) surfaces: Vec<SurfaceKey>,
     /// Name of the only group on each surface; empty where there are several.
@@ -141,6 +145,7 @@ struct Parser<'a> {
     soup: Soup,
     now: SurfaceKey,
     group: String,
+    freeform: Freeform,
     /// Whether `now` changed since the last face.
     stale: bool,
     surface_numbers: HashMap<SurfaceKey, u32>,
@@ -156,6 +161,7 @@ pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Soup, ReadError> {
         soup: Soup { objects: vec![String::new()], ..Soup::default() },
         now: SurfaceKey::default(),
         group: String::new(),
+        freeform: Freeform::default(),
         stale: true,
         surface_numbers: HashMap::new(),
         object_numbers: HashMap::new(),
@@ -216,6 +222,16 @@ impl Parser<'_> {
                 let library = self.cursor.rest_of_line();
                 self.soup.libraries.push(library);
             }
+            b"cstype" => self.basis(),
+            b"deg" => self.degree()?,
+            b"surf" => self.surface_statement(start)?,
+            b"parm" => self.parameters()?,
+            b"end" => self.end_freeform()?,
+            b"step" | b"bmat" => {}
+            b"curv" | b"curv2" | b"trim" | b"hole" | b"scrv" | b"sp" | b"con" => {
+                let word = String::from_utf8_lossy(word);
+                self.warn_once(start, &format!("\"{word}\" is passed over: curves and trims are not drawn"));
+            }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"usemap"
             | b"maplib" | b"mg" | b"vp" | b"ctech" | b"stech" => {}
             _ => {
@@ -263,6 +279,10 @@ impl Parser<'_> {
         while count < 4 && self.cursor.number_follows() {
             extras[count] = self.cursor.f32("a number")?;
             count += 1;
+        }
+        if count == 1 {
+            self.soup.weights.resize(self.soup.points.len() - 1, 1.0);
+            self.soup.weights.push(extras[0]);
         }
         let colored = count >= 3;
         if colored || !self.soup.colors.is_empty() {
@@ -453,6 +473,80 @@ impl Parser<'_> {
             }
         };
         self.stale = true;
+        Ok(())
+    }
+
+    fn basis(&mut self) {
+        self.cursor.skip_blanks();
+        self.freeform.rational = self.cursor.rest().starts_with(b"rat ");
+        if self.freeform.rational {
+            self.cursor.word();
+            self.cursor.skip_blanks();
+        }
+        self.freeform.basis = match self.cursor.word() {
+            b"bezier" => Basis::Bezier,
+            b"bspline" => Basis::BSpline,
+            _ => Basis::Other,
+        };
+    }
+
+    fn degree(&mut self) -> Result<(), ReadError> {
+        self.freeform.degree = [self.cursor.count("the degree in u")?; 2];
+        if self.cursor.number_follows() {
+            self.freeform.degree[1] = self.cursor.count("the degree in v")?;
+        }
+        Ok(())
+    }
+
+    fn surface_statement(&mut self, start: usize) -> Result<(), ReadError> {
+        for i in 0..4 {
+            self.freeform.range[i] = self.cursor.f64("an end of the parameter range")?;
+        }
+        self.freeform.pos = start;
+        self.freeform.control.clear();
+        self.freeform.parameters = Default::default();
+        while let Some(corner) = self.corner()? {
+            self.freeform.control.push(corner.point);
+        }
+        Ok(())
+    }
+
+    fn parameters(&mut self) -> Result<(), ReadError> {
+        self.cursor.skip_blanks();
+        let direction = match self.cursor.peek() {
+            Some(b'u') => 0,
+            Some(b'v') => 1,
+            _ => return Err(self.cursor.expected("the direction \"u\" or \"v\"")),
+        };
+        self.cursor.pos += 1;
+        while self.cursor.number_follows() {
+            let value = self.cursor.f64("a parameter")?;
+            self.freeform.parameters[direction].push(value);
+        }
+        self.end_of_statement()
+    }
+
+    /// Makes the surface, if there is one: curves end here too.
+    fn end_freeform(&mut self) -> Result<(), ReadError> {
+        if self.freeform.control.is_empty() {
+            return Ok(());
+        }
+        let pos = self.freeform.pos;
+        if self.freeform.basis == Basis::Other {
+            self.warn_once(pos, "a surface in another basis than Bézier and B-spline is left out");
+        } else {
+            if self.freeform.is_cut() {
+                self.warn_once(
+                    pos,
+                    "a surface is drawn over its whole parameter range, not the part that is named",
+                );
+            }
+            let shape =
+                self.freeform.shape(&self.soup).map_err(|message| self.cursor.malformed(pos, message))?;
+            let (key, name) = (self.now.clone(), self.group.clone());
+            self.soup.freeforms.push(FreeformSurface { shape, key, name });
+        }
+        self.freeform.control.clear();
         Ok(())
     }
 

@@ -194,3 +194,74 @@ fn many_vertices_of_one_point_are_told_apart_quickly() {
     assert_eq!(mesh.vertices.point.len(), count + 2);
     assert_eq!(mesh.faces.corners[..3 * count], mesh.faces.corners[3 * count..]);
 }
+
+/// A grid of `columns` by `rows` control points over the unit square.
+fn grid(columns: usize, rows: usize) -> String {
+    let place = |i: usize| format!("v {} {} 0 1\n", i % columns, i / columns);
+    (0..columns * rows).map(place).collect()
+}
+
+fn list(count: usize) -> String {
+    (1..=count).map(|i| format!(" {i}")).collect()
+}
+
+#[test]
+fn bicubic_bezier_surfaces_become_patches() {
+    let control = list(28);
+    let text = format!(
+        "{}cstype bezier\ndeg 3 3\nsurf 0 2 0 1{control}\nparm u 0 1 2\nparm v 0 1\nend\n",
+        grid(7, 4)
+    );
+    let scene = read("t.obj", text.as_bytes(), &NoFiles).expect("reads");
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let Shape::BezierPatches { patches } = &scene.geometries[0].shape else { panic!("not patches") };
+    assert_eq!((scene.geometries.len(), patches.len()), (1, 2));
+    let place = |p: usize, i: usize| (patches[p].points[i].x, patches[p].points[i].y);
+    assert_eq!(
+        (place(0, 0), place(0, 3), place(1, 0), place(1, 7)),
+        ((0.0, 0.0), (3.0, 0.0), (3.0, 0.0), (6.0, 1.0))
+    );
+}
+
+#[test]
+fn splines_become_nurbs() {
+    let text = format!(
+        "{}v 3 2 0 0.5\ncstype rat bspline\ndeg 2 1\nsurf 0 2 0 1{} \\\n -1\nparm u 0 0 0 1 2 2 2\nparm v 0 0 1 1\nend\n",
+        grid(4, 2).trim_end_matches("v 3 1 0 1\n"),
+        list(7),
+    );
+    let scene = read("t.obj", text.as_bytes(), &NoFiles).expect("reads");
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let Shape::Nurbs(surface) = &scene.geometries[0].shape else { panic!("not NURBS") };
+    assert_eq!((surface.degree, surface.counts, surface.points.len()), ([2, 1], [4, 2], 8));
+    assert_eq!((surface.knots[0].len(), surface.weights[7], surface.weights[0]), (7, 0.5, 1.0));
+    let text = format!(
+        "{}cstype bezier\ndeg 2 1\nsurf 0 2 0 1{}\nparm u 0 1 2\nparm v 0 1\nend\n",
+        grid(5, 2),
+        list(10)
+    );
+    let scene = read("t.obj", text.as_bytes(), &NoFiles).expect("reads");
+    let Shape::Nurbs(surface) = &scene.geometries[0].shape else { panic!("not NURBS") };
+    assert_eq!(surface.knots[0], [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
+}
+
+#[test]
+fn malformed_surfaces_are_refused_where_they_stand() {
+    let of = |basis: &str, parameters: &str| {
+        let text =
+            format!("{}cstype {basis}\ndeg 3 3\nsurf 0 1 0 1{}\n{parameters}\nend\n", grid(4, 4), list(16));
+        read("t.obj", text.as_bytes(), &NoFiles)
+    };
+    let refused = |parameters: &str| of("bezier", parameters).expect_err(parameters).to_string();
+    assert_eq!(refused("parm u 0 1"), "t.obj:19:1: at least 2 parameters in v are needed, found 0");
+    assert_eq!(refused("parm u 0 1 2\nparm v 0 1"), "t.obj:19:1: expected 7 x 4 control points, found 16");
+    assert_eq!(refused("parm u 1 0\nparm v 0 1"), "t.obj:19:1: the parameters in u must not decrease");
+    assert_eq!(refused("parm w 1 0"), "t.obj:20:6: expected the direction \"u\" or \"v\", found \"w\"");
+    let other = of("cardinal", "parm u 0 1\nparm v 0 1").expect("left out");
+    assert_eq!(
+        other.warnings[0].0,
+        "t.obj:19:1: a surface in another basis than Bézier and B-spline is left out"
+    );
+    let cut = of("bezier", "parm u 0 2\nparm v 0 1").expect("whole");
+    assert!(cut.warnings[0].0.contains("whole parameter range"), "{:?}", cut.warnings);
+}

@@ -108,6 +108,8 @@ fn specular_glossiness_is_converted_with_its_textures() {
             "specularGlossinessTexture": {"index": 1}}}},
         {"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.96, 0.48, 0, 0.5],
             "specularFactor": [0, 0, 0], "glossinessFactor": 0.25}}}]);
+    let first = file.json["materials"][0].clone();
+    file.push("materials", first);
     let scene = file.read();
     let m = reflection(&scene.materials[0]);
     let texels = |t: Option<senca_scene::TextureRef>| {
@@ -121,6 +123,8 @@ fn specular_glossiness_is_converted_with_its_textures() {
     assert_eq!((base[0], coat[0]), ([255, 0, 0, 128], [255, 0, 0, 255]), "red, smooth, no metal");
     assert_eq!((base[1], coat[1]), ([255, 255, 255, 255], [255, 255, 255, 255]), "white rough metal");
     assert_eq!(coat[2], [255, 127, 0, 255]);
+    assert_eq!(scene.images.len(), 4, "two as they are and two made of them, once");
+    assert_eq!(reflection(&scene.materials[2]), m);
     let m = reflection(&scene.materials[1]);
     assert_eq!((m.base_color, m.alpha), (LinearRgb::new(1.0, 0.5, 0.0), 0.5));
     assert_eq!((m.metallic, m.roughness), (0.0, 0.75));
