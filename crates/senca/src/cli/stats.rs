@@ -9,6 +9,8 @@ use serde::Serialize;
 pub(crate) struct Stats {
     /// Times per stage.
     pub(crate) seconds: Seconds,
+    /// What `render` is made of.
+    pub(crate) stages: Stages,
     /// Threads that drew.
     pub(crate) threads: usize,
     /// Width and height of the picture written, in pixels.
@@ -34,6 +36,17 @@ pub(crate) struct Seconds {
     pub(crate) write: f64,
     /// From the start of the command to the end of writing.
     pub(crate) total: f64,
+}
+
+/// Seconds within the stages of drawing.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Stages {
+    /// Light at vertices, or finding edges.
+    pub(crate) vertices: f64,
+    /// Projection, clipping, visibility.
+    pub(crate) raster: f64,
+    /// Colour of pixels.
+    pub(crate) shade: f64,
 }
 
 /// Counts of triangles.
@@ -102,7 +115,10 @@ mod tests {
             keys.sort();
             keys
         };
-        assert_eq!(keys(&json), ["peak_bytes", "samples", "seconds", "size", "threads", "triangles"]);
+        assert_eq!(
+            keys(&json),
+            ["peak_bytes", "samples", "seconds", "size", "stages", "threads", "triangles"]
+        );
         assert_eq!(keys(&json["seconds"]), ["load", "prepare", "render", "total", "write"]);
         assert_eq!(keys(&json["triangles"]), ["clipped", "culled", "drawn", "in"]);
     }

@@ -17,7 +17,7 @@ use picture::Target;
 use crate::cli::input::read_scene_and_hints;
 use crate::cli::output::{self, tell};
 use crate::cli::{
-    Failure, Interrupt, Progress, Seconds, Stats, Stopwatch, Triangles, peak_bytes, use_threads,
+    Failure, Interrupt, Progress, Seconds, Stages, Stats, Stopwatch, Triangles, peak_bytes, use_threads,
 };
 
 /// Draws the scene and writes the picture.
@@ -101,6 +101,11 @@ fn stats(seconds: Seconds, report: &Report, size: [u32; 2], settings: &senca::Se
     let drawing = &report.drawing;
     Stats {
         seconds,
+        stages: Stages {
+            vertices: drawing.seconds.vertices,
+            raster: drawing.seconds.raster,
+            shade: drawing.seconds.shade,
+        },
         threads: rayon::current_num_threads(),
         size,
         triangles: Triangles {
