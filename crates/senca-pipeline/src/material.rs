@@ -99,7 +99,8 @@ impl Resolved {
     }
 }
 
-/// All materials of `scene`, and behind them the default material.
+/// All materials of `scene`, and behind them the default material, which has two sides: nothing is
+/// known of a body that has no material, and many models of the kind are open.
 ///
 /// `filter` replaces that of every texture; without `textures` none is read.
 pub(crate) fn resolve_materials(
@@ -108,7 +109,7 @@ pub(crate) fn resolve_materials(
     textures: bool,
 ) -> Result<Vec<Resolved>, RenderError> {
     let mut binder = Binder { scene, filter, textures, ready: HashMap::new() };
-    let default = Material::default();
+    let default = Material { double_sided: true, ..Material::default() };
     scene.materials.iter().chain([&default]).map(|m| binder.resolve(m)).collect()
 }
 

@@ -74,7 +74,8 @@ pub enum Raster {
 /// Which faces are left out for showing their back (course text, section 2.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Culling {
-    /// Those whose material is not double-sided. In the line modes none.
+    /// Those whose material is not double-sided; surfaces without a material show both sides. In the
+    /// line modes none.
     #[default]
     ByMaterial,
     /// All. Right for closed opaque solids seen from outside.

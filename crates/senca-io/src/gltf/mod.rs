@@ -11,7 +11,8 @@
 //!   the format's text asks for, because shape is then easier to see.
 //! - Nodes keep their numbers; instances (EXT_mesh_gpu_instancing) become children at the end. The
 //!   default scene's nodes, or those of the first scene, are the roots.
-//! - Lights keep lumen, candela and lux as they are.
+//! - Lights: lux and candela are divided by pi, so that a white matt surface shows what other viewers of
+//!   glTF show; strengths above what a display shows are kept.
 //! - Accessors may be of any type, normalised, sparse or without buffer, with positions, normals,
 //!   tangents and texture coordinates of any allowed type (KHR_mesh_quantization).
 //! - Also read: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,

@@ -317,7 +317,8 @@ fn camera(document: &Document<'_>, i: usize, json: &json::Camera) -> Camera {
 fn light(document: &Document<'_>, i: usize, json: &json::Light) -> Light {
     let place = format!("extensions.KHR_lights_punctual.lights[{i}]");
     let color = json.color.unwrap_or([1.0; 3]).map(|c| c.max(0.0));
-    let intensity = json.intensity.unwrap_or(1.0).max(0.0);
+    // In glTF a white matt surface under 1 lux shows 1/pi; here a light of 1 makes it show 1.
+    let intensity = json.intensity.unwrap_or(1.0).max(0.0) / std::f64::consts::PI;
     let color = document.floats(&place, color.map(|c| c * intensity), [1.0; 3]);
     let kind = match json.r#type.as_str() {
         "directional" => LightKind::Parallel,

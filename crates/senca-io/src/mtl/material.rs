@@ -31,6 +31,8 @@ pub(super) fn add(entry: &Entry, scene: &mut Scene, pictures: &mut Pictures<'_>)
         normal_texture,
         occlusion_texture,
         alpha_mode: if see_through { AlphaMode::Blend } else { AlphaMode::Opaque },
+        // The format knows no sides, and its models are often open.
+        double_sided: true,
         unlit: illum == 0,
         mirror: if matches!(illum, 3..=7 | 9) { specular(entry) } else { LinearRgb::BLACK },
         transmission: transmission(entry, illum, alpha),

@@ -68,7 +68,7 @@ fn coefficients_are_taken_over() {
 #[test]
 fn missing_coefficients_have_defaults() {
     let m = material("newmtl m\n");
-    assert_eq!(m, Material { name: "m".to_owned(), ..Material::default() });
+    assert_eq!(m, Material { name: "m".to_owned(), double_sided: true, ..Material::default() });
     assert_eq!(phong(&material("newmtl m\nKd 0.5 0 0\n")).ambient, LinearRgb::new(0.5, 0.0, 0.0));
     assert_eq!(phong(&material("newmtl m\nTr 0.75\n")).alpha, 0.25);
     assert_eq!(phong(&material("newmtl m\nd 1\nTr 1\n")).alpha, 1.0);

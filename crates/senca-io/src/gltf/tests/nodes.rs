@@ -134,7 +134,7 @@ fn cameras_of_both_kinds() {
 fn lights_of_all_kinds() {
     let mut file = Builder::new();
     file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [
-        {"type": "directional", "color": [1, 0.5, 0], "intensity": 4},
+        {"type": "directional", "color": [1, 0.5, 0], "intensity": 4.0 * std::f64::consts::PI},
         {"type": "point", "range": 7},
         {"type": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}},
         {"type": "spot", "spot": {"innerConeAngle": 0.0, "outerConeAngle": 1.570_796_4}},

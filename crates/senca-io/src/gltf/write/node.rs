@@ -138,14 +138,14 @@ impl Output {
     }
 }
 
-/// A colour whose largest component is 1, and the intensity that makes up for it. Their product, in
-/// double precision, rounds back to the same bits.
+/// A colour whose largest component is 1, and the intensity that makes up for it, times pi for glTF's
+/// units (see the reader). Read back in double precision they round to the same bits.
 fn set_color(json: &mut Map<String, Value>, color: LinearRgb) {
     let color = color.to_array().map(|v| if v.is_finite() { f64::from(v.max(0.0)) } else { 0.0 });
     let largest = color.into_iter().fold(0.0, f64::max);
     let intensity = if largest > 0.0 { largest } else { 1.0 };
     set(json, "color", numbers(&color.map(|v| v / intensity)));
-    set(json, "intensity", json!(intensity));
+    set(json, "intensity", json!(intensity * std::f64::consts::PI));
 }
 
 fn range(light: &Light) -> Option<f64> {

@@ -96,9 +96,9 @@ pub(crate) struct DrawingArguments {
     #[arg(long, value_name = "PIXELS", value_parser = positive, default_value = "0.25")]
     pub(crate) tolerance: f64,
 
-    /// Draws surfaces that are turned away, too
-    #[arg(long)]
-    pub(crate) no_cull: bool,
+    /// Which surfaces are left out for being turned away
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t)]
+    pub(crate) cull: CullChoice,
 }
 
 /// From where, and when.
@@ -221,6 +221,18 @@ pub(crate) enum RasterChoice {
     Scanline,
 }
 
+/// Surfaces that are left out for being turned away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CullChoice {
+    /// Those whose material has one side
+    #[default]
+    Material,
+    /// All: right for closed bodies seen from outside
+    Always,
+    /// None
+    Never,
+}
+
 /// How texels become colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FilterChoice {
@@ -300,7 +312,7 @@ impl DrawingArguments {
         let standard = pipeline::Settings::default();
         pipeline::Settings {
             raster: self.raster.into(),
-            cull: if self.no_cull { pipeline::Culling::Never } else { standard.cull },
+            cull: self.cull.into(),
             tolerance_px: self.tolerance,
             filter: self.texture_filter.map(Into::into),
             ..standard
@@ -329,6 +341,16 @@ impl From<ShadingChoice> for Shading {
             ShadingChoice::Gouraud => Self::Gouraud,
             ShadingChoice::Phong => Self::Phong,
             ShadingChoice::Material => Self::Material,
+        }
+    }
+}
+
+impl From<CullChoice> for pipeline::Culling {
+    fn from(choice: CullChoice) -> Self {
+        match choice {
+            CullChoice::Material => Self::ByMaterial,
+            CullChoice::Always => Self::Always,
+            CullChoice::Never => Self::Never,
         }
     }
 }
