@@ -104,6 +104,14 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Stops of exposure, within +-64.
+pub(crate) fn stops(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v.abs() <= 64.0 => Ok(v),
+        _ => Err("a number from -64 to 64 is needed".into()),
+    }
+}
+
 /// A number that is not negative.
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -10,7 +10,7 @@ use senca::scene::Filter;
 use senca::{LookAt, Moment, Settings, Viewpoint, pipeline};
 
 use crate::cli::Failure;
-use crate::cli::values::{BackgroundChoice, Crop, Size, not_negative, positive, triple, view_angle};
+use crate::cli::values::{BackgroundChoice, Crop, Size, not_negative, positive, stops, triple, view_angle};
 
 /// What is drawn and how.
 #[derive(Args, Debug)]
@@ -95,6 +95,10 @@ pub(crate) struct DrawingArguments {
     /// How far curved surfaces may be from their polygons, in pixels
     #[arg(long, value_name = "PIXELS", value_parser = positive, default_value = "0.25")]
     pub(crate) tolerance: f64,
+
+    /// Makes all light stronger or weaker: each stop up doubles it, each stop down halves it
+    #[arg(long, value_name = "STOPS", value_parser = stops, default_value = "0", allow_hyphen_values = true)]
+    pub(crate) exposure: f64,
 
     /// Which surfaces are left out for being turned away
     #[arg(long, value_enum, value_name = "WHICH", default_value_t)]

@@ -1,6 +1,7 @@
 //! `senca render`: a scene or a model into a picture.
 
 mod arguments;
+mod exposure;
 mod picture;
 
 use std::borrow::Cow;
@@ -29,7 +30,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     running.stats.as_deref().map_or(Ok(()), output::check_writable)?;
     use_threads(running.threads)?;
     let interrupt = Interrupt::listen();
-    let SceneFile { scene, render: hints } = read_scene_and_hints(&arguments.scene)?;
+    let SceneFile { mut scene, render: hints } = read_scene_and_hints(&arguments.scene)?;
+    exposure::expose(&mut scene, arguments.drawing.exposure);
     let settings = arguments.settings(&hints, target.shading(hints.shading.map(shading_of_hint)))?;
     if !running.quiet {
         tell_warnings(&arguments.scene, &scene);
@@ -43,6 +45,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let drawn = target.draw(Cow::Owned(scene), &settings, &control);
     progress.finish();
     let drawn = drawn.map_err(|error| failure(&arguments.scene, &error))?;
+    if !running.quiet
+        && let Some(stops) = drawn.image().and_then(exposure::stops_too_bright)
+    {
+        tell(&format!(
+            "senca: {}: warning: most of the picture is brighter than white; --exposure {:.0} shows it",
+            arguments.scene.display(),
+            arguments.drawing.exposure - stops
+        ));
+    }
     seconds.prepare = drawn.report.prepare_seconds + drawn.report.drawing.seconds.prepare;
     seconds.render = (watch.lap() - seconds.prepare).max(0.0);
 

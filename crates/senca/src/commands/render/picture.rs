@@ -95,6 +95,14 @@ impl Target {
 }
 
 impl Drawn {
+    /// The pixels, where it has any.
+    pub(super) fn image(&self) -> Option<&Image> {
+        match &self.content {
+            Content::Pixels(image, _) => Some(image),
+            Content::Svg(_) => None,
+        }
+    }
+
     /// The bytes of the file.
     pub(super) fn encode(&self) -> Result<Cow<'_, [u8]>, Failure> {
         match &self.content {
