@@ -31,13 +31,14 @@ pub enum Error {
     Render(#[from] RenderError),
 }
 
-/// `the scene has: "a", "b"`, or that it has none.
+/// `the scene has: "a", "b"`, or that it has none, or none with a name.
 fn listed(what: &str, known: &[String]) -> String {
-    let quoted: Vec<_> = known.iter().map(|name| format!("\"{name}\"")).collect();
-    if quoted.is_empty() {
-        format!("the scene has no {what}")
-    } else {
-        format!("the scene has: {}", quoted.join(", "))
+    let quoted: Vec<_> =
+        known.iter().filter(|name| !name.is_empty()).map(|name| format!("\"{name}\"")).collect();
+    match (known.len(), quoted.is_empty()) {
+        (0, _) => format!("the scene has no {what}"),
+        (_, true) => format!("the scene has no {what} with a name"),
+        _ => format!("the scene has: {}", quoted.join(", ")),
     }
 }
 
