@@ -12,7 +12,7 @@
 //! ```
 //! use senca_math::glam::DVec3;
 //! use senca_math::{Image, View};
-//! use senca_pipeline::{Settings, Shading, render};
+//! use senca_pipeline::{Culling, Settings, Shading, render};
 //! use senca_scene::{Scene, Shape};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -22,7 +22,8 @@
 //! let view = View::perspective(&world_from_camera, 0.6, 1.0, 1.0, Some(20.0))?;
 //!
 //! let mut image = Image::new(64, 64, [0.0; 4]);
-//! let settings = Settings { shading: Shading::Phong, samples: 4, ..Settings::default() };
+//! let settings =
+//!     Settings { shading: Shading::Phong, cull: Culling::Always, samples: 4, ..Settings::default() };
 //! let report = render(&scene, &view, &settings, &mut image)?;
 //!
 //! assert!(report.triangles_culled > 0);
