@@ -25,7 +25,9 @@ pub(crate) fn patches(text: &str) -> Vec<BezierPatch> {
 
 /// The teapot as the thesis gives it.
 pub(crate) fn teapot() -> Vec<BezierPatch> {
-    patches(include_str!("test_data/teapot.bez"))
+    // The sample has the digits of point 49 put right.
+    let sample = include_str!("../../../samples/classic/teapot.bez");
+    patches(&sample.replace("49 1.75000 -0.98000", "49 1.75000 -0.89000"))
 }
 
 /// Mesh of an object file, with a vertex per point.
@@ -49,10 +51,10 @@ pub(crate) fn object(text: &str) -> Mesh {
 
 /// The gabled house of the thesis: 17 vertices, 13 polygons, 13 surfaces.
 pub(crate) fn house() -> Mesh {
-    object(include_str!("test_data/house.dat"))
+    object(include_str!("../../../samples/classic/house.dat"))
 }
 
 /// The octagonal cylinder of the thesis: 16 vertices, 10 polygons, 3 surfaces.
 pub(crate) fn octagonal_cylinder() -> Mesh {
-    object(include_str!("test_data/cylinder.dat"))
+    object(include_str!("../../../samples/classic/cylinder.dat"))
 }

@@ -10,7 +10,7 @@ fn converted(patches: &[BezierPatch], steps: [u32; 2], epsilon: f64, as_printed:
 }
 
 fn sample() -> Vec<BezierPatch> {
-    patches(include_str!("../test_data/patch.bez"))
+    patches(include_str!("../../../../samples/classic/patch.bez"))
 }
 
 /// Header, points and polygons as the thesis writes an object file.
@@ -29,7 +29,7 @@ fn object_text(mesh: &Mesh) -> String {
 
 #[test]
 fn the_sample_patch_gives_the_printed_mesh() {
-    let printed = include_str!("../test_data/patch_4x4.dat");
+    let printed = include_str!("../../../../samples/classic/patch.dat");
     for as_printed in [false, true] {
         assert_eq!(object_text(&converted(&sample(), [4, 4], 0.05, as_printed)), printed);
     }
