@@ -1,0 +1,1 @@
+//! A bounding volume hierarchy: which triangle, or which box, does a ray meet first?
