@@ -33,6 +33,7 @@
 pub mod aabb;
 pub mod bezier;
 pub mod color;
+mod control;
 pub mod conventions;
 pub mod device;
 pub mod frame;
@@ -56,6 +57,7 @@ mod test_support;
 pub use aabb::Aabb;
 pub use bezier::{BicubicPatch, Continuity, CubicCurve, PatchEdge, Seam, SurfacePoint};
 pub use color::{LinearRgb, Srgb8};
+pub use control::{Cancelled, Control};
 pub use device::{DeviceError, DeviceMap, Rect, pixel_center};
 pub use frame::{Orthonormality, axes_from_z_and_up, orthonormality};
 pub use glam;

@@ -1,6 +1,6 @@
 //! Why a picture could not be drawn.
 
-use senca_math::Image;
+use senca_math::{Cancelled, Image};
 use senca_scene::ShapeError;
 
 /// Why [`crate::render`] gave no picture. Variants come in the order input, parameter, limit, caller.
@@ -99,6 +99,12 @@ pub enum RenderError {
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<Cancelled> for RenderError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }
 
 impl RenderError {

@@ -56,7 +56,8 @@ mod visibility;
 pub use error::RenderError;
 pub use lines::{Segment, SegmentKind, hidden_line_segments, wire_segments};
 pub use render::{render, render_with};
-pub use report::{Control, Report, StageSeconds};
+pub use report::{Report, StageSeconds};
+pub use senca_math::Control;
 pub use settings::{
     ColorInterpolation, Crop, Culling, Raster, Settings, Shading, TextureMethod, WireSettings,
 };

@@ -9,13 +9,13 @@ mod hidden;
 mod picture;
 mod projector;
 
+use senca_math::Control;
 use senca_math::glam::DVec3;
 use senca_math::{LinearRgb, View};
 use senca_scene::{Mesh, Scene};
 
 use crate::RenderError;
 use crate::geometry::{Placed, World};
-use crate::report::Control;
 use crate::settings::{Culling, Settings, Shading};
 use edges::{Edge, edges_of};
 use projector::Projector;

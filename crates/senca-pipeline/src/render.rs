@@ -14,6 +14,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use senca_math::Control;
 use senca_math::conventions::NO_ID;
 use senca_math::{Image, View};
 use senca_raster::{Counters, Rasterizer, ScanlineRasterizer, Shading as RasterShading, TiledRasterizer};
@@ -23,7 +24,7 @@ use senca_shading::LightRig;
 use crate::geometry::World;
 use crate::gouraud::light_vertices;
 use crate::material::resolve_materials;
-use crate::report::{Control, Report, timed};
+use crate::report::{Report, timed};
 use crate::settings::{Crop, Raster, Settings, Shading};
 use crate::shade::Shader;
 use crate::single_pass::SinglePass;

@@ -1,9 +1,6 @@
-//! What happened while a picture was drawn, and the caller's hold on it.
+//! What happened while a picture was drawn.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-use crate::RenderError;
 
 /// Counters and times of one picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,40 +37,6 @@ pub struct StageSeconds {
     pub shade: f64,
     /// All together.
     pub total: f64,
-}
-
-/// The caller's hold on a running render. The default neither watches nor stops it.
-#[derive(Clone, Copy, Default)]
-pub struct Control<'a> {
-    /// Called now and then with the share done, 0 to 1, never falling.
-    pub progress: Option<&'a (dyn Fn(f32) + Sync)>,
-    /// Set to true from anywhere to stop within milliseconds with [`RenderError::Cancelled`].
-    pub cancel: Option<&'a AtomicBool>,
-}
-
-impl std::fmt::Debug for Control<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Control").field("cancel", &self.cancel).finish_non_exhaustive()
-    }
-}
-
-impl Control<'_> {
-    /// Whether the caller asked to stop.
-    pub(crate) fn is_cancelled(&self) -> bool {
-        self.cancel.is_some_and(|c| c.load(Ordering::Relaxed))
-    }
-
-    /// An error when the caller asked to stop.
-    pub(crate) fn check(&self) -> Result<(), RenderError> {
-        if self.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
-    }
-
-    /// Tells the caller that `share` of the work is done.
-    pub(crate) fn report(&self, share: f32) {
-        if let Some(progress) = self.progress {
-            progress(share.clamp(0.0, 1.0));
-        }
-    }
 }
 
 /// Runs `work` and adds the seconds it took to `seconds`.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use senca_math::Control;
 use senca_math::conventions::{DEPTH_FAR, NO_ID};
 use senca_math::glam::{DMat4, DVec3, Mat4, Vec4};
 use senca_raster::{
@@ -13,7 +14,6 @@ use senca_scene::AlphaMode;
 
 use crate::RenderError;
 use crate::geometry::Part;
-use crate::report::Control;
 use crate::settings::Crop;
 use crate::shade::Shader;
 use crate::surface::TriangleSetup;

@@ -10,6 +10,7 @@
 //! so that faces which touch an edge, or lie in one plane with it, do not hide it by rounding.
 
 use rayon::prelude::*;
+use senca_math::Control;
 use senca_math::glam::{DVec2, DVec3, DVec4};
 use senca_math::{LinearRgb, ViewKind};
 use senca_scene::{Faces, Mesh, Vertices, triangulated};
@@ -19,7 +20,6 @@ use super::projector::Projector;
 use super::{Segment, SegmentKind};
 use crate::RenderError;
 use crate::geometry::World;
-use crate::report::Control;
 use crate::settings::Settings;
 
 /// A face must be nearer than an edge by this part of the distance to hide it.

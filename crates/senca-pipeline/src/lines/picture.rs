@@ -1,6 +1,7 @@
 //! Pictures of line drawings.
 
 use rayon::prelude::*;
+use senca_math::Control;
 use senca_math::glam::Vec4;
 use senca_math::{Image, View};
 use senca_raster::{
@@ -11,7 +12,7 @@ use senca_scene::Scene;
 use super::{Segment, segments};
 use crate::RenderError;
 use crate::render::{Paper, bands, put_sample, rasterizer, sample_position};
-use crate::report::{Control, Report, timed};
+use crate::report::{Report, timed};
 use crate::settings::{Crop, Settings, Shading};
 use crate::visibility::Window;
 
