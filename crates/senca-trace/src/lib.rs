@@ -1,9 +1,18 @@
 //! Recursive ray tracing (course text, chapter 3), and path tracing as ground truth.
 
+pub mod accel;
 mod counters;
+mod error;
 mod intersect;
+mod mesh_surface;
+mod primary;
 mod ray;
+mod world;
 
 pub use counters::Counters;
+pub use error::TraceError;
 pub use intersect::{Crossing, Crossings, Intersect, SurfacePoint};
+pub use primary::PrimaryRays;
 pub use ray::Ray;
+pub use senca_math::Control;
+pub use world::{Hit, Interaction, Object, World};
