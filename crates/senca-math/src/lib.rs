@@ -11,6 +11,7 @@
 //! | what cameras see | [`view`], [`view_file`], [`device`] |
 //! | flat things | [`mod@line`], [`plane`], [`polygon`], [`ray`], [`aabb`] |
 //! | curved things | [`bezier`], [`nurbs`], [`roots`] |
+//! | formulas | [`mod@expression`], [`mod@interval`] |
 //! | pictures | [`mod@color`], [`hls`], [`mod@image`] |
 //!
 //! From the scene to a pixel, and back:
@@ -36,9 +37,11 @@ pub mod color;
 mod control;
 pub mod conventions;
 pub mod device;
+pub mod expression;
 pub mod frame;
 pub mod hls;
 pub mod image;
+pub mod interval;
 pub mod line;
 pub mod nurbs;
 pub mod plane;
@@ -59,10 +62,12 @@ pub use bezier::{BicubicPatch, Continuity, CubicCurve, PatchEdge, Seam, SurfaceP
 pub use color::{LinearRgb, Srgb8};
 pub use control::{Cancelled, Control};
 pub use device::{DeviceError, DeviceMap, Rect, pixel_center};
+pub use expression::{Expression, ExpressionError, Polynomial3, RayPolynomial};
 pub use frame::{Orthonormality, axes_from_z_and_up, orthonormality};
 pub use glam;
 pub use hls::Hls;
 pub use image::Image;
+pub use interval::Interval;
 pub use line::Line2;
 pub use nurbs::{BezierPiece, KnotVector, NurbsCurve, NurbsError, NurbsSurface, RationalPatch};
 pub use plane::{CANONICAL_VOLUME, CLIP_VOLUME, Plane};
