@@ -74,7 +74,9 @@ pub use plane::{CANONICAL_VOLUME, CLIP_VOLUME, Plane};
 pub use polygon::{newell_normal, triangulate, triangulate_in_space, triangulate_with_holes};
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
 pub use ray::Ray;
-pub use roots::{Roots, cubic_roots, quadratic_roots, quartic_roots};
+pub use roots::{
+    Roots, cubic_roots, cubic_roots_closed_form, quadratic_roots, quartic_roots, quartic_roots_closed_form,
+};
 pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows, named_json, named_text};
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{

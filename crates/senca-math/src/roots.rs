@@ -1,6 +1,9 @@
-//! Real roots of polynomials up to degree four.
+//! Real roots of polynomials.
 //!
-//! All functions give the real roots in ascending order, in a list of fixed capacity. A double root
+//! Up to degree four here; of any degree on an interval in [`bernstein`] and, as its plain twin,
+//! [`sturm`]. The textbook's formulas of Cardano and Ferrari are in [`closed_form`].
+//!
+//! The functions here give the real roots in ascending order, in a list of fixed capacity. A double root
 //! is given once or twice, depending on rounding; what is certain is that each root given makes the
 //! polynomial zero up to rounding, and that a root at which the sign changes is not missed. A zero
 //! leading coefficient lowers the degree; the zero polynomial has no roots to give.
@@ -9,6 +12,14 @@
 //! turning points, which are the roots of the derivative. Between two neighbouring turning points a
 //! polynomial is monotone, so a bracketed Newton iteration finds its one root there to the last digit.
 //! Closed formulas after Cardano and Ferrari lose up to half of the digits near multiple roots.
+
+pub mod bernstein;
+pub mod closed_form;
+pub mod sturm;
+
+pub use bernstein::{bernstein_from_power, bernstein_roots, polynomial_roots_between, restricted_to};
+pub use closed_form::{cubic_roots_closed_form, quartic_roots_closed_form, roots_closed_form};
+pub use sturm::sturm_roots;
 
 /// Up to four roots, ascending.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
