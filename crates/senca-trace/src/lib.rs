@@ -4,14 +4,17 @@ pub mod accel;
 mod counters;
 mod error;
 mod intersect;
+mod material;
 mod mesh_surface;
 mod primary;
 mod ray;
+mod texture;
 mod world;
 
 pub use counters::Counters;
 pub use error::TraceError;
 pub use intersect::{Crossing, Crossings, Intersect, SurfacePoint};
+pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use primary::PrimaryRays;
 pub use ray::Ray;
 pub use senca_math::Control;
