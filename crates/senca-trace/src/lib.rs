@@ -8,6 +8,7 @@ mod material;
 mod mesh_surface;
 mod primary;
 mod ray;
+mod sampler;
 mod texture;
 mod world;
 
@@ -17,5 +18,6 @@ pub use intersect::{Crossing, Crossings, Intersect, SurfacePoint};
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use primary::PrimaryRays;
 pub use ray::Ray;
+pub use sampler::{Pattern, Sampler};
 pub use senca_math::Control;
 pub use world::{Hit, Interaction, Object, World};
