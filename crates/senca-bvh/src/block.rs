@@ -1,0 +1,129 @@
+//! Leaves of the triangle hierarchy: up to eight triangles side by side.
+
+use fearless_simd::{Simd, f32x8, prelude::*};
+use senca_math::glam::Vec3;
+
+use crate::prepared::PreparedRay;
+use crate::traverse::{LaneRay, max_or, min_or};
+use crate::watertight::{SMALLEST_DETERMINANT, intersect};
+
+/// Triangles of a block.
+pub(crate) const LANES: usize = 8;
+
+/// Corners of up to eight triangles.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Block {
+    /// By corner, axis, triangle.
+    corners: [[[f32; LANES]; 3]; 3],
+    /// Indices in the caller's list.
+    pub(crate) triangles: [u32; LANES],
+}
+
+/// Where a ray meets the triangles of a block.
+pub(crate) struct BlockHits {
+    /// Bit per triangle that is met between `t_min` and the limit given, which is still admitted.
+    pub(crate) mask: u32,
+    pub(crate) t: [f32; LANES],
+    pub(crate) u: [f32; LANES],
+    pub(crate) v: [f32; LANES],
+}
+
+impl Block {
+    pub(crate) const EMPTY: Self = Self { corners: [[[0.0; LANES]; 3]; 3], triangles: [u32::MAX; LANES] };
+
+    pub(crate) fn set(&mut self, lane: usize, triangle: u32, corners: [Vec3; 3]) {
+        for (rows, corner) in self.corners.iter_mut().zip(corners) {
+            for axis in 0..3 {
+                rows[axis][lane] = corner[axis];
+            }
+        }
+        self.triangles[lane] = triangle;
+    }
+
+    pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
+        self.corners.map(|rows| Vec3::from_array(rows.map(|row| row[lane])))
+    }
+
+    /// The same decisions and bytes as [`intersect`], for `count` triangles at once.
+    #[inline(always)]
+    pub(crate) fn meet<S: Simd>(
+        &self,
+        simd: S,
+        ray: &LaneRay<S>,
+        count: u32,
+        t_max: f32,
+    ) -> Option<BlockHits> {
+        let zero = f32x8::splat(simd, 0.0);
+        let [kx, ky, kz] = ray.prepared.axes;
+        let shear = ray.prepared.shear.map(|s| f32x8::splat(simd, s));
+        let relative = |corner: usize, axis: usize| {
+            f32x8::load_array_ref(simd, &self.corners[corner][axis])
+                - f32x8::splat(simd, ray.prepared.origin[axis])
+        };
+
+        // 1. Corners in the space where the ray is the z axis.
+        let z = [0, 1, 2].map(|corner| relative(corner, kz));
+        let x = [0, 1, 2].map(|corner| relative(corner, kx) - shear[0] * z[corner]);
+        let y = [0, 1, 2].map(|corner| relative(corner, ky) - shear[1] * z[corner]);
+
+        // 2. Edge functions. All have the sign of their sum, or are 0, where the ray passes inside.
+        let u = x[2] * y[1] - y[2] * x[1];
+        let v = x[0] * y[2] - y[0] * x[2];
+        let w = x[1] * y[0] - y[1] * x[0];
+        let det = u + v + w;
+        let low = min_or(u, min_or(v, w));
+        let high = max_or(u, max_or(v, w));
+        let inside = low.simd_ge(zero) | high.simd_le(zero) | !det.simd_eq(det);
+        let candidates = inside.to_bitmask() as u32 & (u32::MAX >> (32 - count));
+        if candidates == 0 {
+            return None;
+        }
+
+        // 3. Which of them need double precision.
+        let size = det.abs();
+        let safe = (low.simd_gt(zero) | high.simd_lt(zero))
+            & size.simd_ge(f32x8::splat(simd, SMALLEST_DETERMINANT))
+            & size.simd_lt(f32x8::splat(simd, f32::INFINITY));
+        let safe = safe.to_bitmask() as u32 & candidates;
+
+        // 4. The distance, within the triangle's box.
+        let t = (u * (shear[2] * z[0]) + v * (shear[2] * z[1]) + w * (shear[2] * z[2])) / det;
+        let mut enter = f32x8::splat(simd, f32::NEG_INFINITY);
+        let mut leave = f32x8::splat(simd, f32::INFINITY);
+        for axis in 0..3 {
+            let [a, b, c] = [0, 1, 2].map(|corner| relative(corner, axis));
+            let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+            let (near, far) = if ray.prepared.downward[axis] { (max, min) } else { (min, max) };
+            enter = max_or(near * ray.near_reciprocal[axis], enter);
+            leave = min_or(far * ray.far_reciprocal[axis], leave);
+        }
+        let t = max_or(min_or(t, leave), enter);
+        let met = enter.simd_le(leave) & t.simd_gt(ray.t_min) & t.simd_le(f32x8::splat(simd, t_max));
+        let mut hits = BlockHits {
+            mask: met.to_bitmask() as u32 & safe,
+            t: t.to_array(),
+            u: (v / det).to_array(),
+            v: (w / det).to_array(),
+        };
+        if safe != candidates {
+            self.meet_exactly(ray.prepared, candidates & !safe, t_max, &mut hits);
+        }
+        Some(hits)
+    }
+
+    /// Adds the triangles of `mask` that are met, one by one.
+    #[cold]
+    fn meet_exactly(&self, ray: &PreparedRay, mut mask: u32, t_max: f32, hits: &mut BlockHits) {
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            if let Some((t, u, v)) = intersect(ray, self.corners(lane))
+                && t <= t_max
+            {
+                hits.mask |= 1 << lane;
+                (hits.t[lane], hits.u[lane], hits.v[lane]) = (t, u, v);
+            }
+        }
+    }
+}

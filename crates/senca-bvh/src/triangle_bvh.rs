@@ -1,0 +1,350 @@
+//! The hierarchy over triangles.
+
+use fearless_simd::{Level, Simd, dispatch};
+use rayon::prelude::*;
+use senca_math::glam::Vec3;
+
+use crate::block::{Block, LANES};
+use crate::build::{Item, build};
+use crate::node::{Child, Node};
+use crate::prepared::PreparedRay;
+use crate::traverse::{LaneRay, Visitor, walk};
+use crate::{Aabb32, BuildError, Ray32, TraversalCounts, TriangleHit};
+
+/// How a hierarchy is built. None of it changes an answer.
+///
+/// The build uses the threads of the current rayon pool.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildSettings {
+    /// Vector instructions used by rays. Default: the best of this machine.
+    pub level: Level,
+}
+
+impl Default for BuildSettings {
+    fn default() -> Self {
+        Self { level: Level::new() }
+    }
+}
+
+/// A hierarchy over triangles.
+///
+/// Answers are facts of the ray and the triangles: the hit with the smallest t, of equal ones that of the
+/// lowest index. They do not depend on the threads of the build or on the vector instructions, and are
+/// those of [`crate::BruteForce`], byte for byte.
+///
+/// Triangles are met from both sides. Rays through a shared edge or corner meet at least one of the
+/// triangles there. Triangles with a NaN or infinite coordinate or without area are never met. Neither is
+/// anything by rays that are not valid ([`Ray32::is_valid`]).
+#[derive(Clone, Debug)]
+pub struct TriangleBvh {
+    nodes: Vec<Node>,
+    blocks: Vec<Block>,
+    bounds: Aabb32,
+    level: Level,
+}
+
+impl TriangleBvh {
+    /// Builds the hierarchy over `triangles`, which hold three indices into `points` each.
+    ///
+    /// # Errors
+    /// [`BuildError::IndexOutOfRange`] when an index is not that of a point; [`BuildError::TooMany`] for
+    /// more than 2^28 triangles.
+    pub fn build(
+        points: &[Vec3],
+        triangles: &[[u32; 3]],
+        settings: &BuildSettings,
+    ) -> Result<Self, BuildError> {
+        if triangles.len() > Child::MAX_LEAVES {
+            return Err(BuildError::TooMany { count: triangles.len(), limit: Child::MAX_LEAVES });
+        }
+        let tree = build(items(points, triangles)?, LANES);
+        let corners = |triangle: u32| triangles[triangle as usize].map(|index| points[index as usize]);
+        let blocks = tree
+            .leaves
+            .par_iter()
+            .with_min_len(1024)
+            .map(|&(start, count)| {
+                let mut block = Block::EMPTY;
+                let items = &tree.items[start as usize..][..count as usize];
+                for (lane, &triangle) in items.iter().enumerate() {
+                    block.set(lane, triangle, corners(triangle));
+                }
+                block
+            })
+            .collect();
+        Ok(Self { nodes: tree.nodes, blocks, bounds: tree.extent.as_box(), level: settings.level })
+    }
+
+    /// The box around all triangles that can be met; empty if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb32 {
+        self.bounds
+    }
+
+    /// Bytes of the hierarchy, with its own copy of the triangles' corners.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.nodes.capacity() * size_of::<Node>()
+            + self.blocks.capacity() * size_of::<Block>()
+    }
+
+    /// The hit with the smallest t.
+    #[must_use]
+    #[inline]
+    pub fn closest(&self, ray: &Ray32) -> Option<TriangleHit> {
+        self.find_closest(ray, |_| true, Uncounted)
+    }
+
+    /// The hit with the smallest t of those that `accept` agrees to. It may be asked about hits that
+    /// turn out not to be the closest.
+    #[inline]
+    pub fn closest_where(
+        &self,
+        ray: &Ray32,
+        accept: impl FnMut(&TriangleHit) -> bool,
+    ) -> Option<TriangleHit> {
+        self.find_closest(ray, accept, Uncounted)
+    }
+
+    /// As [`TriangleBvh::closest`], adding what it cost to `counts`.
+    pub fn closest_counted(&self, ray: &Ray32, counts: &mut TraversalCounts) -> Option<TriangleHit> {
+        self.find_closest(ray, |_| true, counts)
+    }
+
+    /// Whether the ray meets any triangle.
+    #[must_use]
+    #[inline]
+    pub fn occluded(&self, ray: &Ray32) -> bool {
+        self.find_any(ray, |_| true, Uncounted)
+    }
+
+    /// Whether the ray meets any triangle at a place that `accept` agrees to.
+    #[inline]
+    pub fn occluded_where(&self, ray: &Ray32, accept: impl FnMut(&TriangleHit) -> bool) -> bool {
+        self.find_any(ray, accept, Uncounted)
+    }
+
+    /// As [`TriangleBvh::occluded`], adding what it cost to `counts`.
+    pub fn occluded_counted(&self, ray: &Ray32, counts: &mut TraversalCounts) -> bool {
+        self.find_any(ray, |_| true, counts)
+    }
+
+    /// Shows `visit` every triangle that the ray meets, once each, in no particular order.
+    #[inline]
+    pub fn all_hits(&self, ray: &Ray32, mut visit: impl FnMut(&TriangleHit)) {
+        let accept = |hit: &TriangleHit| {
+            visit(hit);
+            false
+        };
+        self.find_any(ray, accept, Uncounted);
+    }
+
+    #[inline]
+    fn find_closest<A: FnMut(&TriangleHit) -> bool, C: Count>(
+        &self,
+        ray: &Ray32,
+        mut accept: A,
+        mut count: C,
+    ) -> Option<TriangleHit> {
+        match ray.halves() {
+            None => self.closest_ahead(ray, accept, count),
+            Some([behind, ahead]) => self
+                .farthest(&behind, |hit| accept(&hit.reversed()), &mut count)
+                .map(|hit| hit.reversed())
+                .or_else(|| self.closest_ahead(&ahead, accept, count)),
+        }
+    }
+
+    #[inline]
+    fn find_any<A: FnMut(&TriangleHit) -> bool, C: Count>(
+        &self,
+        ray: &Ray32,
+        mut accept: A,
+        mut count: C,
+    ) -> bool {
+        match ray.halves() {
+            None => self.any_ahead(ray, accept, count),
+            Some([behind, ahead]) => {
+                self.any_ahead(&behind, |hit| accept(&hit.reversed()), &mut count)
+                    || self.any_ahead(&ahead, accept, count)
+            }
+        }
+    }
+
+    /// The hit with the largest t, of equal ones that of the lowest index.
+    fn farthest<A: FnMut(&TriangleHit) -> bool, C: Count>(
+        &self,
+        ray: &Ray32,
+        mut accept: A,
+        count: C,
+    ) -> Option<TriangleHit> {
+        let mut best: Option<TriangleHit> = None;
+        let keep = |hit: &TriangleHit| {
+            let better = best.is_none_or(|b| hit.t > b.t || (hit.t == b.t && hit.triangle < b.triangle));
+            if better && accept(hit) {
+                best = Some(*hit);
+            }
+            false
+        };
+        self.any_ahead(ray, keep, count);
+        best
+    }
+
+    /// The closest hit of a ray whose t is nowhere negative.
+    #[inline]
+    fn closest_ahead<A: FnMut(&TriangleHit) -> bool, C: Count>(
+        &self,
+        ray: &Ray32,
+        accept: A,
+        count: C,
+    ) -> Option<TriangleHit> {
+        let mut visitor = Closest { blocks: &self.blocks, best: None, t_best: f32::INFINITY, accept, count };
+        self.walk(ray, &mut visitor);
+        visitor.best
+    }
+
+    /// Whether a ray whose t is nowhere negative meets anything.
+    #[inline]
+    fn any_ahead<A: FnMut(&TriangleHit) -> bool, C: Count>(&self, ray: &Ray32, accept: A, count: C) -> bool {
+        let mut visitor = Any { blocks: &self.blocks, found: false, accept, count };
+        self.walk(ray, &mut visitor);
+        visitor.found
+    }
+
+    #[inline]
+    fn walk<V: Visitor>(&self, ray: &Ray32, visitor: &mut V) {
+        if let Some(prepared) = PreparedRay::new(ray) {
+            dispatch!(self.level, simd => walk(simd, &self.nodes, &prepared, visitor));
+        }
+    }
+}
+
+/// Counts of a walk, kept or not.
+trait Count {
+    fn add(&mut self, nodes: u32, triangles: u32);
+}
+
+struct Uncounted;
+
+impl Count for Uncounted {
+    #[inline(always)]
+    fn add(&mut self, _: u32, _: u32) {}
+}
+
+impl Count for &mut TraversalCounts {
+    #[inline(always)]
+    fn add(&mut self, nodes: u32, triangles: u32) {
+        self.nodes += u64::from(nodes);
+        self.triangles += u64::from(triangles);
+    }
+}
+
+impl<C: Count> Count for &mut C {
+    #[inline(always)]
+    fn add(&mut self, nodes: u32, triangles: u32) {
+        (**self).add(nodes, triangles);
+    }
+}
+
+/// Keeps the closest hit.
+struct Closest<'a, A, C> {
+    blocks: &'a [Block],
+    best: Option<TriangleHit>,
+    /// t of `best` in units of the prepared ray.
+    t_best: f32,
+    accept: A,
+    count: C,
+}
+
+impl<A: FnMut(&TriangleHit) -> bool, C: Count> Visitor for Closest<'_, A, C> {
+    #[inline(always)]
+    fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<'_, S>, leaf: Child, t_max: &mut f32) -> bool {
+        self.count.add(0, leaf.leaf_count());
+        let block = &self.blocks[leaf.leaf_index()];
+        let Some(hits) = block.meet(simd, ray, leaf.leaf_count(), *t_max) else { return false };
+        let mut mask = hits.mask;
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize % LANES;
+            mask &= mask - 1;
+            let (t, triangle) = (hits.t[lane], block.triangles[lane]);
+            if t < *t_max || self.best.is_some_and(|best| t == self.t_best && triangle < best.triangle) {
+                let hit =
+                    TriangleHit { t: t * ray.prepared.t_unit, u: hits.u[lane], v: hits.v[lane], triangle };
+                if hit.t < f32::INFINITY && (self.accept)(&hit) {
+                    self.best = Some(hit);
+                    (self.t_best, *t_max) = (t, t);
+                }
+            }
+        }
+        false
+    }
+
+    #[inline(always)]
+    fn node(&mut self) {
+        self.count.add(1, 0);
+    }
+}
+
+/// Ends at the first hit.
+struct Any<'a, A, C> {
+    blocks: &'a [Block],
+    found: bool,
+    accept: A,
+    count: C,
+}
+
+impl<A: FnMut(&TriangleHit) -> bool, C: Count> Visitor for Any<'_, A, C> {
+    #[inline(always)]
+    fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<'_, S>, leaf: Child, t_max: &mut f32) -> bool {
+        self.count.add(0, leaf.leaf_count());
+        let block = &self.blocks[leaf.leaf_index()];
+        let Some(hits) = block.meet(simd, ray, leaf.leaf_count(), *t_max) else { return false };
+        let mut mask = hits.mask;
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize % LANES;
+            mask &= mask - 1;
+            let (t, triangle) = (hits.t[lane], block.triangles[lane]);
+            let hit = TriangleHit { t: t * ray.prepared.t_unit, u: hits.u[lane], v: hits.v[lane], triangle };
+            if t < *t_max && hit.t < f32::INFINITY && (self.accept)(&hit) {
+                self.found = true;
+                return true;
+            }
+        }
+        false
+    }
+
+    #[inline(always)]
+    fn node(&mut self) {
+        self.count.add(1, 0);
+    }
+}
+
+/// The boxes of the triangles that can be met.
+fn items(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Item>, BuildError> {
+    let wrong =
+        triangles.par_iter().enumerate().with_min_len(1 << 14).find_map_first(|(triangle, indices)| {
+            let index = indices.iter().copied().find(|&index| index as usize >= points.len())?;
+            Some(BuildError::IndexOutOfRange { triangle: triangle as u32, index, points: points.len() })
+        });
+    if let Some(error) = wrong {
+        return Err(error);
+    }
+    let mut items: Vec<(bool, Item)> = Vec::new();
+    triangles
+        .par_iter()
+        .enumerate()
+        .with_min_len(1 << 12)
+        .map(|(triangle, indices)| {
+            let [a, b, c] = indices.map(|index| points[index as usize]);
+            (can_be_met([a, b, c]), Item::new(triangle as u32, a.min(b).min(c), a.max(b).max(c)))
+        })
+        .collect_into_vec(&mut items);
+    Ok(items.into_iter().filter(|item| item.0).map(|item| item.1).collect())
+}
+
+/// Whether a triangle is finite and has an area.
+pub(crate) fn can_be_met([a, b, c]: [Vec3; 3]) -> bool {
+    let normal = (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
+    a.is_finite() && b.is_finite() && c.is_finite() && normal != senca_math::glam::DVec3::ZERO
+}
