@@ -4,11 +4,35 @@
 //! only the parameter t and what is needed to find the rest ([`Crossing`]), and only for the nearest
 //! one the point, the normals and the texture coordinates ([`SurfacePoint`]).
 
+mod analytic;
+mod build;
+mod cuboid;
+mod flat;
+mod frustum;
+mod prism;
+mod region;
+mod revolution;
+mod sphere;
+#[cfg(test)]
+mod tests;
+mod torus;
+mod triangle;
+
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3, Vec4};
 use smallvec::SmallVec;
 
 use crate::{Counters, Ray};
+
+pub use build::{Elsewhere, surface_of};
+pub use cuboid::Cuboid;
+pub use flat::{Disc, PlaneSurface, Polygon};
+pub use frustum::Frustum;
+pub use prism::Prism;
+pub use revolution::Revolution;
+pub use sphere::{Ellipsoid, Sphere};
+pub use torus::Torus;
+pub use triangle::{Triangle, ray_triangle};
 
 /// A ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,9 +14,14 @@ mod world;
 
 pub use counters::Counters;
 pub use error::TraceError;
-pub use intersect::{Crossing, Crossings, Intersect, SurfacePoint};
+pub use intersect::{
+    Crossing, Crossings, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum, Intersect, PlaneSurface, Polygon,
+    Prism, Revolution, Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
+};
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use primary::PrimaryRays;
+pub mod textbook;
+
 pub use ray::Ray;
 pub use sampler::{Pattern, Sampler};
 pub use senca_math::Control;

@@ -109,11 +109,11 @@ fn descend<const N: usize>(b: &[f64; N], low: f64, depth: u32, found: &mut impl 
 /// Bernstein coefficients over the two halves.
 fn halves<const N: usize>(b: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut left, mut right) = (*b, *b);
-    for level in 1..N {
+    for (level, first) in left.iter_mut().enumerate().skip(1) {
         for i in 0..N - level {
             right[i] = 0.5 * (right[i] + right[i + 1]);
         }
-        left[level] = right[0];
+        *first = right[0];
     }
     (left, right)
 }
@@ -193,7 +193,7 @@ mod tests {
         assert!(polynomial_roots_between(&[0.0, 1.0], 0.0, 2.0).is_empty());
         assert_eq!(polynomial_roots_between(&[0.0, 1.0], -2.0, 0.0), [0.0]);
         let touch = polynomial_roots_between(&[1.0, -2.0, 1.0], 0.0, 2.0);
-        assert!(touch.len() % 2 == 0 && touch.iter().all(|r| (r - 1.0).abs() < 1e-7));
+        assert!(touch.len().is_multiple_of(2) && touch.iter().all(|r| (r - 1.0).abs() < 1e-7));
         assert!(polynomial_roots_between(&[0.0; 9], -1.0, 1.0).is_empty());
         assert!(polynomial_roots_between(&[f64::NAN; 4], -1.0, 1.0).is_empty());
     }

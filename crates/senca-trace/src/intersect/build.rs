@@ -1,0 +1,106 @@
+//! From the shapes of a scene to surfaces that rays can meet.
+
+use senca_math::glam::DVec3;
+use senca_scene::{Shape, ShapeError};
+
+use super::{Cuboid, Disc, Ellipsoid, Frustum, PlaneSurface, Polygon, Prism, Revolution, Sphere, Torus};
+use crate::Intersect;
+
+/// What builds the surfaces of shapes that have accelerators of their own.
+pub type Elsewhere<'a> = dyn FnMut(&Shape) -> Result<Box<dyn Intersect>, ShapeError> + 'a;
+
+/// The surface of any shape but meshes and patches, which have their own accelerators: for those
+/// `elsewhere` is asked.
+///
+/// # Errors
+/// [`ShapeError`] when a parameter is out of range, in the same words as by tessellation, and whatever
+/// `elsewhere` refuses.
+pub fn surface_of(shape: &Shape, elsewhere: &mut Elsewhere<'_>) -> Result<Box<dyn Intersect>, ShapeError> {
+    Ok(match shape {
+        Shape::Mesh(_) | Shape::BezierPatches { .. } | Shape::Nurbs(_) => elsewhere(shape)?,
+        Shape::Sphere { radius } => Box::new(Sphere::new(positive("sphere", "radius", *radius)?)),
+        Shape::Ellipsoid { radii } => {
+            Box::new(Ellipsoid::new(all_positive("ellipsoid", "half axis", *radii)?))
+        }
+        Shape::Box { size } => Box::new(Cuboid::new(all_positive("box", "edge length", *size)?)),
+        Shape::Cylinder { radius, height, capped } => {
+            positive("cylinder", "radius", *radius)?;
+            Box::new(Frustum::new(*radius, *radius, positive("cylinder", "height", *height)?, *capped))
+        }
+        Shape::Cone { radius, top_radius, height, capped } => {
+            not_negative("cone", "radius", *radius)?;
+            not_negative("cone", "top_radius", *top_radius)?;
+            positive("cone", "the larger radius", radius.max(*top_radius))?;
+            Box::new(Frustum::new(*radius, *top_radius, positive("cone", "height", *height)?, *capped))
+        }
+        Shape::Torus { major_radius, minor_radius } => Box::new(Torus::new(
+            positive("torus", "major_radius", *major_radius)?,
+            positive("torus", "minor_radius", *minor_radius)?,
+        )),
+        Shape::Disc { radius, inner_radius } => disc(*radius, *inner_radius)?,
+        Shape::Plane { size } => {
+            positive("plane", "size", size.unwrap_or(1.0))?;
+            Box::new(PlaneSurface::new(*size))
+        }
+        Shape::Polygon { outline, holes } => polygon(outline, holes)?,
+        Shape::Prism { base, height, capped } => {
+            positive("prism", "height", *height)?;
+            if base.len() < 3 || !base.iter().all(|p| p.is_finite()) {
+                return malformed("prism", "the base needs at least three finite corners");
+            }
+            let Some(prism) = Prism::new(base, *height, *capped) else {
+                return malformed("prism", "the base has no area");
+            };
+            Box::new(prism)
+        }
+        Shape::Revolution { profile, bezier, angle } => Box::new(Revolution::new(profile, *bezier, *angle)?),
+    })
+}
+
+fn disc(radius: f64, inner: f64) -> Result<Box<dyn Intersect>, ShapeError> {
+    positive("disc", "radius", radius)?;
+    not_negative("disc", "inner_radius", inner)?;
+    if inner >= radius {
+        let (parameter, expected) = ("inner_radius", "below the outer radius");
+        return Err(ShapeError::Parameter { shape: "disc", parameter, value: inner, expected });
+    }
+    Ok(Box::new(Disc::new(radius, inner)))
+}
+
+fn polygon(outline: &[DVec3], holes: &[Vec<DVec3>]) -> Result<Box<dyn Intersect>, ShapeError> {
+    if !outline.iter().chain(holes.iter().flatten()).all(|p| p.is_finite()) {
+        return malformed("polygon", "every corner must be finite");
+    }
+    if outline.len() < 3 || holes.iter().any(|hole| hole.len() < 3) {
+        return malformed("polygon", "an outline and a hole have at least three corners each");
+    }
+    match Polygon::new(outline, holes) {
+        Some(polygon) => Ok(Box::new(polygon)),
+        None => malformed("polygon", "the corners lie on one line"),
+    }
+}
+
+pub(super) fn malformed<T>(shape: &'static str, reason: &str) -> Result<T, ShapeError> {
+    Err(ShapeError::Malformed { shape, reason: reason.to_owned() })
+}
+
+/// `value` when it is finite and above 0.
+pub(super) fn positive(shape: &'static str, parameter: &'static str, value: f64) -> Result<f64, ShapeError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(ShapeError::Parameter { shape, parameter, value, expected: "above 0 and finite" })
+}
+
+fn all_positive(shape: &'static str, parameter: &'static str, values: DVec3) -> Result<DVec3, ShapeError> {
+    values.to_array().iter().try_for_each(|&value| positive(shape, parameter, value).map(|_| ()))?;
+    Ok(values)
+}
+
+/// `value` when it is finite and not below 0.
+fn not_negative(shape: &'static str, parameter: &'static str, value: f64) -> Result<f64, ShapeError> {
+    if value >= 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(ShapeError::Parameter { shape, parameter, value, expected: "0 or more and finite" })
+}
