@@ -178,7 +178,7 @@ fn check_laws(shape: &Shape, ray: &Ray) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn laws_hold_for_any_ray(ray in rays(), index in 0..64usize) {

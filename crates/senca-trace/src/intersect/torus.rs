@@ -61,15 +61,15 @@ impl Analytic for Torus {
         let middle = -ray.origin.dot(unit);
         let nearest = (ray.origin + middle * unit) / size;
 
-        // Only within the sphere and the slab around the ring.
-        let half_squared = 1.0 - nearest.length_squared();
+        // Only within the sphere and the slab around the ring, both slightly larger than the torus, so
+        // that the ends lie outside of it.
+        const SLACK: f64 = 1.0 + 1e-9;
+        let half_squared = SLACK - nearest.length_squared();
         if half_squared <= 0.0 || half_squared.is_nan() {
             return;
         }
         let half = half_squared.sqrt();
-        // Slightly larger than the torus, so that the ends lie outside of it.
-        let reach = unit_torus.minor * (1.0 + 1e-9) + f64::MIN_POSITIVE;
-        let (low, high) = slab(nearest.y, unit.y, -reach, reach);
+        let (low, high) = slab(nearest.y, unit.y, -SLACK * unit_torus.minor, SLACK * unit_torus.minor);
         let (low, high) = (low.max(-half), high.min(half));
         if low >= high {
             return;

@@ -79,7 +79,9 @@ impl AxialRay {
             return self.roots_within(piece, 0.0, 1.0, meet);
         }
         // Padded, so that the equation is surely negative where heights are out of reach.
-        let band = reach_squared.sqrt() / self.flatness * (1.0 + 1e-9);
+        let rounding =
+            4.0 * f64::EPSILON * (piece.heights[0].abs() + piece.heights[1].abs() + self.height.abs());
+        let band = reach_squared.sqrt() / self.flatness * (1.0 + 1e-9) + rounding;
         let [low, high] = [self.height - band, self.height + band];
         if piece.heights[1] < low || piece.heights[0] > high {
             return;
@@ -102,11 +104,11 @@ impl AxialRay {
             let product = |f: [f64; 4]| [f[0] * f[0], f[0] * f[3], f[3] * f[3]];
             let (radii, rises) = (product(radii), product(rises));
             let h: [f64; 3] = std::array::from_fn(|i| radii[i] - self.distance_squared - rises[i]);
-            bernstein_roots(&h, &mut found);
+            bernstein_roots(&without_zeros_on_axis(h, &points), &mut found);
         } else {
             let (radii, rises) = (square(radii), square(rises));
             let h: [f64; 7] = std::array::from_fn(|i| radii[i] - self.distance_squared - rises[i]);
-            bernstein_roots(&h, &mut found);
+            bernstein_roots(&without_zeros_on_axis(h, &points), &mut found);
         }
     }
 
@@ -155,6 +157,16 @@ impl AxialRay {
         }
         meet(t, s);
     }
+}
+
+/// On the axis the equation is nowhere positive, and an end there never inside: a zero counts as negative.
+fn without_zeros_on_axis<const N: usize>(mut h: [f64; N], points: &[DVec2; 4]) -> [f64; N] {
+    for (end, point) in [(0, points[0]), (N - 1, points[3])] {
+        if point.x == 0.0 && h[end] == 0.0 {
+            h[end] = -f64::MIN_POSITIVE;
+        }
+    }
+    h
 }
 
 /// Control points of the stretch of a piece between two parameters; at 0 and 1 exactly the ends.
