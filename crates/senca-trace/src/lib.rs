@@ -9,6 +9,7 @@ mod mesh_surface;
 mod primary;
 mod ray;
 mod sampler;
+pub mod textbook;
 mod texture;
 mod world;
 
@@ -20,7 +21,6 @@ pub use intersect::{
 };
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use primary::PrimaryRays;
-pub mod textbook;
 
 pub use ray::Ray;
 pub use sampler::{Pattern, Sampler};

@@ -218,6 +218,23 @@ proptest! {
     }
 }
 
+/// Lines that once had an odd number of crossings: through a pole, almost level through a rim, and
+/// along the equator of a torus.
+#[test]
+fn crossings_stay_even_in_special_places() {
+    let (spool, ring) = (&bodies()[9].0, &bodies()[10].0);
+    let torus = Shape::Torus { major_radius: 1.0, minor_radius: 0.35 };
+    let cases = [
+        (spool, DVec3::ZERO, DVec3::new(-1.0, 1.0, -1.0)),
+        (ring, DVec3::new(-1.0, 0.0, -0.5), DVec3::new(-1.0, 1e-9, -1.0)),
+        (&torus, DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1e-9, 0.0, 1.0)),
+    ];
+    for (shape, origin, direction) in cases {
+        let found = all_crossings(&*surface(shape), &line(origin, direction));
+        assert!(!found.is_empty() && found.len().is_multiple_of(2), "{shape:?} {found:?}");
+    }
+}
+
 #[test]
 fn rays_that_are_not_valid_meet_nothing() {
     let good = Ray::new(DVec3::new(0.1, 0.3, -5.0), DVec3::Z);
