@@ -113,4 +113,15 @@ pub trait Intersect: Send + Sync + std::fmt::Debug {
         let _ = part;
         self.closest(ray, counters)
     }
+
+    /// How far computed places may be from where rays meet the surface, as a share of the largest
+    /// coordinate in object space. For surfaces computed in double precision about 1e-10.
+    fn precision(&self) -> f64 {
+        1e-10
+    }
+
+    /// Bytes of memory that the surface holds on to beside what it borrows from the scene.
+    fn memory_bytes(&self) -> usize {
+        0
+    }
 }

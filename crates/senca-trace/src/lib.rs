@@ -13,6 +13,7 @@ pub mod textbook;
 mod texture;
 mod world;
 
+pub use accel::{Accel, AccelSettings};
 pub use counters::Counters;
 pub use error::TraceError;
 pub use intersect::{
@@ -25,4 +26,4 @@ pub use primary::PrimaryRays;
 pub use ray::Ray;
 pub use sampler::{Pattern, Sampler};
 pub use senca_math::Control;
-pub use world::{Hit, Interaction, Object, World};
+pub use world::{Hit, Interaction, Object, World, WorldSettings};

@@ -315,6 +315,7 @@ mod tests {
             color: Vec4::ONE,
             material,
             object: 0,
+            error: 0.0,
         }
     }
 

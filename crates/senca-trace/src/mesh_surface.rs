@@ -1,26 +1,48 @@
 //! Meshes as surfaces that rays meet.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
-use senca_scene::{Mesh, Shape, ShapeError, TessellationSettings, tessellate};
+use senca_scene::{Mesh, Topology};
 
+use crate::accel::BoxTree;
 use crate::{Counters, Crossing, Crossings, Intersect, Ray, SurfacePoint};
+
+/// Share of the largest coordinate by which single precision, in which points are stored, may move
+/// things.
+const PRECISION: f64 = 1.0 / (1 << 21) as f64;
+/// Triangles that a leaf of the hierarchy may hold.
+const LEAF_SIZE: u32 = 4;
 
 /// A mesh of triangles.
 #[derive(Debug)]
 pub(crate) struct MeshSurface<'s> {
     mesh: Cow<'s, Mesh>,
     bounds: Aabb,
+    tree: Option<BoxTree>,
+    closed: OnceLock<bool>,
 }
 
 impl<'s> MeshSurface<'s> {
-    /// The triangles of `shape`.
-    pub(crate) fn new(shape: &'s Shape, settings: &TessellationSettings) -> Result<Self, ShapeError> {
-        let mesh = tessellate(shape, settings)?;
+    /// The triangles of `mesh`, which holds together and has no other faces. Without a hierarchy it is
+    /// asked part by part.
+    pub(crate) fn of_mesh(mesh: Cow<'s, Mesh>, hierarchy: bool) -> Self {
         let bounds = mesh.bounds();
-        Ok(Self { mesh, bounds })
+        let mut surface = Self { mesh, bounds, tree: None, closed: OnceLock::new() };
+        if hierarchy {
+            let boxes: Vec<Aabb> = (0..surface.part_count()).map(|i| surface.widened(i)).collect();
+            surface.tree = Some(BoxTree::new(&boxes, LEAF_SIZE));
+        }
+        surface
+    }
+
+    /// Box around a triangle, wider than rounding.
+    fn widened(&self, triangle: u32) -> Aabb {
+        let bounds = Aabb::of_points(self.points(triangle));
+        let margin = DVec3::splat(1e-12 * self.bounds.min.abs().max(self.bounds.max.abs()).max_element());
+        Aabb { min: bounds.min - margin, max: bounds.max + margin }
     }
 
     /// Vertex numbers of a triangle's corners.
@@ -58,23 +80,57 @@ impl Intersect for MeshSurface<'_> {
     }
 
     fn closest(&self, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
+        let line = ray;
         let mut ray = *ray;
         let mut nearest = None;
-        for triangle in 0..self.part_count() {
+        let mut ask = |triangle: u32, counters: &mut Counters| {
             if let Some(crossing) = self.closest_in_part(triangle, &ray, counters) {
-                ray.t_max = crossing.t;
-                nearest = Some(crossing);
+                let before = |n: &Crossing| (crossing.t, crossing.part) < (n.t, n.part);
+                if nearest.as_ref().is_none_or(before) {
+                    ray.t_max = crossing.t.next_up();
+                    nearest = Some(crossing);
+                }
             }
+            ray.t_max
+        };
+        match &self.tree {
+            Some(tree) => tree.traverse(line, counters, |triangles, counters| {
+                triangles.iter().map(|&triangle| ask(triangle, counters)).last()
+            }),
+            None => (0..self.part_count()).for_each(|triangle| {
+                ask(triangle, counters);
+            }),
         }
         nearest
     }
 
+    fn occludes(&self, ray: &Ray, counters: &mut Counters) -> bool {
+        let meets =
+            |triangle: u32, counters: &mut Counters| self.closest_in_part(triangle, ray, counters).is_some();
+        let Some(tree) = &self.tree else {
+            return (0..self.part_count()).any(|triangle| meets(triangle, counters));
+        };
+        let mut met = false;
+        tree.traverse(ray, counters, |triangles, counters| {
+            met = triangles.iter().any(|&triangle| meets(triangle, counters));
+            (!met).then_some(ray.t_max)
+        });
+        met
+    }
+
     fn crossings(&self, ray: &Ray, counters: &mut Counters, out: &mut Crossings) {
         let first = out.len();
-        for triangle in 0..self.part_count() {
+        let mut add = |triangle, counters: &mut Counters| {
             out.extend(self.closest_in_part(triangle, ray, counters));
+        };
+        match &self.tree {
+            Some(tree) => tree.traverse(ray, counters, |triangles, counters| {
+                triangles.iter().for_each(|&triangle| add(triangle, counters));
+                Some(ray.t_max)
+            }),
+            None => (0..self.part_count()).for_each(|triangle| add(triangle, counters)),
         }
-        out[first..].sort_by(|a, b| a.t.total_cmp(&b.t));
+        out[first..].sort_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));
     }
 
     fn surface_point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
@@ -100,7 +156,7 @@ impl Intersect for MeshSurface<'_> {
     }
 
     fn is_closed(&self) -> bool {
-        senca_scene::Topology::new(&self.mesh).is_closed()
+        *self.closed.get_or_init(|| Topology::new(&self.mesh).is_closed())
     }
 
     fn part_count(&self) -> u32 {
@@ -115,6 +171,14 @@ impl Intersect for MeshSurface<'_> {
         counters.tests += 1;
         let (t, uv) = meet(ray, self.points(part))?;
         Some(Crossing { t, part, uv })
+    }
+
+    fn precision(&self) -> f64 {
+        PRECISION
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.tree.as_ref().map_or(0, BoxTree::memory_bytes)
     }
 }
 

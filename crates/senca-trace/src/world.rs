@@ -1,46 +1,19 @@
 //! The scene as the tracer sees it: surfaces placed in the world, with their materials.
 
-use std::collections::HashMap;
-use std::sync::Arc;
+mod build;
+mod object;
+mod spawn;
+#[cfg(test)]
+mod tests;
 
-use senca_math::glam::{DMat3, DMat4, DVec2, DVec3, Vec4};
-use senca_math::{Aabb, normal_matrix};
-use senca_scene::{Geometry, GeometryId, Instance, NodeId, Scene, Shape, Surface, TessellationSettings};
+use senca_math::glam::{DVec2, DVec3, Vec4};
+use senca_scene::{Scene, TessellationSettings, Warning};
 
-use crate::accel::{Accelerator, List};
-use crate::mesh_surface::MeshSurface;
-use crate::{Counters, Crossing, Intersect, Ray, TraceError};
+use crate::accel::{self, AccelSettings, Accelerator};
+use crate::{Counters, Crossing, Ray, TraceError};
 
-/// A surface placed in the world.
-#[derive(Clone, Debug)]
-pub struct Object<'s> {
-    /// The surface in its own space.
-    pub surface: Arc<dyn Intersect + 's>,
-    /// Object to world.
-    pub world_from_object: DMat4,
-    /// World to object.
-    pub object_from_world: DMat4,
-    /// Normals of the object to normals of the world, up to length.
-    pub world_from_object_normals: DMat3,
-    /// Box around it in the world.
-    pub bounds_world: Aabb,
-    /// Material of each surface number, as index into the scene's materials; the scene's count
-    /// stands for the default material. Never empty; the last one holds for all further surfaces.
-    pub materials: Vec<usize>,
-    /// Node that places it.
-    pub node: NodeId,
-    /// Geometry that it is.
-    pub geometry: GeometryId,
-}
-
-impl Object<'_> {
-    /// Index of the material of a surface number.
-    #[must_use]
-    pub fn material_of(&self, surface: u32) -> usize {
-        let last = self.materials.len() - 1;
-        self.materials[(surface as usize).min(last)]
-    }
-}
+pub(crate) use object::LocalRay;
+pub use object::Object;
 
 /// A ray meets an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +49,28 @@ pub struct Interaction {
     pub material: usize,
     /// Index into [`World::objects`].
     pub object: u32,
+    /// How far, in world units, `point` may be from where other rays meet the surface, by rounding.
+    /// [`World::spawn`] goes by it.
+    pub error: f64,
+}
+
+/// How a world is made of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldSettings {
+    /// Accelerator and its settings. Default [`accel::Accel::Bvh`].
+    pub accel: AccelSettings,
+    /// The small positive number below which a new ray takes no hit, so that it does not meet the
+    /// surface it starts on, in world units, >= 0. Default `None`: new rays start beside the surface by
+    /// as much as rounding asks for there, which suits scenes of any size.
+    pub epsilon: Option<f64>,
+    /// How shapes that rays cannot meet exactly become meshes.
+    pub tessellation: TessellationSettings,
+}
+
+impl Default for WorldSettings {
+    fn default() -> Self {
+        Self { accel: AccelSettings::default(), epsilon: None, tessellation: build::default_tessellation() }
+    }
 }
 
 /// All that rays can meet.
@@ -84,6 +79,8 @@ pub struct World<'s> {
     scene: &'s Scene,
     objects: Vec<Object<'s>>,
     accelerator: Box<dyn Accelerator>,
+    epsilon: Option<f64>,
+    warnings: Vec<Warning>,
 }
 
 impl<'s> World<'s> {
@@ -92,21 +89,20 @@ impl<'s> World<'s> {
     /// # Errors
     /// [`TraceError::Shape`].
     pub fn new(scene: &'s Scene) -> Result<Self, TraceError> {
-        let mut ready = HashMap::new();
-        let mut objects = Vec::new();
-        for instance in scene.instances() {
-            let geometry = &scene.geometries[instance.geometry.index()];
-            let surface = match ready.get(&instance.geometry) {
-                Some(surface) => Arc::clone(surface),
-                None => {
-                    let surface = surface_of(geometry, instance.geometry)?;
-                    ready.insert(instance.geometry, Arc::clone(&surface));
-                    surface
-                }
-            };
-            objects.extend(place(scene, geometry, &instance, surface));
+        Self::with_settings(scene, &WorldSettings::default())
+    }
+
+    /// The same by `settings`.
+    ///
+    /// # Errors
+    /// [`TraceError::Shape`], [`TraceError::Setting`].
+    pub fn with_settings(scene: &'s Scene, settings: &WorldSettings) -> Result<Self, TraceError> {
+        if let Some(value) = settings.epsilon.filter(|e| !(*e >= 0.0 && e.is_finite())) {
+            return Err(TraceError::Setting { name: "epsilon", value, expected: "at least 0 and finite" });
         }
-        Ok(Self { scene, objects, accelerator: Box::new(List) })
+        let (objects, warnings) = build::objects(scene, settings)?;
+        let accelerator = accel::build(scene, &objects, &settings.accel)?;
+        Ok(Self { scene, objects, accelerator, epsilon: settings.epsilon, warnings })
     }
 
     /// The scene.
@@ -121,16 +117,44 @@ impl<'s> World<'s> {
         &self.objects
     }
 
-    /// The nearest hit that the ray admits.
+    /// What was left out of the scene, and why.
     #[must_use]
-    pub fn closest(&self, ray: &Ray, counters: &mut Counters) -> Option<Hit> {
-        self.accelerator.closest(&self.objects, ray, counters)
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 
-    /// Whether the ray meets anything that `blocks` it.
+    /// The nearest hit that the ray admits. Of hits at the same t the one with the lowest object,
+    /// then the lowest part, counts. Rays that are not valid meet nothing.
     #[must_use]
+    #[inline]
+    pub fn closest(&self, ray: &Ray, counters: &mut Counters) -> Option<Hit> {
+        if !ray.is_valid() {
+            return None;
+        }
+        match &*self.objects {
+            [] => None,
+            [object] if self.accelerator.may_skip() => {
+                let crossing = object.closest(ray, counters)?;
+                Some(Hit { object: 0, crossing })
+            }
+            objects => self.accelerator.closest(objects, ray, counters),
+        }
+    }
+
+    /// Whether the ray meets anything that `blocks` it. Objects that let no light pass
+    /// ([`Object::opaque`]) block without being asked for. Hits of others come in no particular order,
+    /// each at most once, and when nothing blocks each exactly once.
+    #[must_use]
+    #[inline]
     pub fn occluded(&self, ray: &Ray, counters: &mut Counters, blocks: &dyn Fn(&Hit) -> bool) -> bool {
-        self.accelerator.occluded(&self.objects, ray, counters, blocks)
+        if !ray.is_valid() {
+            return false;
+        }
+        match &*self.objects {
+            [] => false,
+            [object] if self.accelerator.may_skip() => object.blocks(0, ray, counters, blocks),
+            objects => self.accelerator.occluded(objects, ray, counters, blocks),
+        }
     }
 
     /// What there is to know at a hit of this ray.
@@ -142,8 +166,10 @@ impl<'s> World<'s> {
         let to_world = |n: DVec3| (object.world_from_object_normals * n).normalize_or_zero();
         let normal = to_world(p.normal);
         let shading_normal = to_world(p.shading_normal);
+        let point = object.world_from_object.transform_point3(p.point);
+        let rounding = f64::EPSILON * (ray.origin.abs() + point.abs()).max_element();
         Interaction {
-            point: object.world_from_object.transform_point3(p.point),
+            point,
             normal,
             shading_normal: if shading_normal.dot(normal) < 0.0 { -shading_normal } else { shading_normal },
             to_viewer: -ray.direction.normalize_or_zero(),
@@ -154,51 +180,13 @@ impl<'s> World<'s> {
             color: p.color,
             material: object.material_of(p.surface),
             object: hit.object,
+            error: object.error_at(p.point) + 8.0 * rounding,
         }
     }
-}
 
-/// The surface of a geometry in its own space.
-fn surface_of(geometry: &Geometry, id: GeometryId) -> Result<Arc<dyn Intersect + '_>, TraceError> {
-    let failed = |source| TraceError::Shape { geometry: id.0, name: geometry.name.clone(), source };
-    let settings = TessellationSettings::default();
-    Ok(Arc::new(MeshSurface::new(&geometry.shape, &settings).map_err(failed)?))
-}
-
-/// The surface where its instance puts it. Nothing where the placement is not finite or flattens it.
-fn place<'s>(
-    scene: &Scene,
-    geometry: &Geometry,
-    instance: &Instance,
-    surface: Arc<dyn Intersect + 's>,
-) -> Option<Object<'s>> {
-    let world_from_object = instance.world_from_object;
-    let object_from_world = world_from_object.inverse();
-    if !world_from_object.is_finite() || !object_from_world.is_finite() {
-        return None;
+    /// Bytes of memory that the world holds on to beside the scene.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        build::surface_bytes(&self.objects) + size_of_val(&*self.objects) + self.accelerator.memory_bytes()
     }
-    let bounds_world = surface.bounds().transformed(&world_from_object);
-    let count = scene.materials.len();
-    let node = scene.nodes[instance.node.index()].material;
-    let material_of = |own: Option<senca_scene::MaterialId>| {
-        own.or(node).or(geometry.material).map_or(count, |m| m.index().min(count))
-    };
-    let surfaces: &[Surface] = match &geometry.shape {
-        Shape::Mesh(mesh) => &mesh.surfaces,
-        _ => &[],
-    };
-    let materials = match surfaces {
-        [] => vec![material_of(None)],
-        some => some.iter().map(|s| material_of(s.material)).collect(),
-    };
-    Some(Object {
-        surface,
-        world_from_object,
-        object_from_world,
-        world_from_object_normals: normal_matrix(DMat3::from_mat4(world_from_object)),
-        bounds_world,
-        materials,
-        node: instance.node,
-        geometry: instance.geometry,
-    })
 }

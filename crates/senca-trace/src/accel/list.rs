@@ -1,26 +1,22 @@
-//! No acceleration: every object is asked.
+//! No acceleration: every element is asked.
 
 use crate::world::{Hit, Object};
 use crate::{Counters, Ray};
 
 use super::Accelerator;
+use super::search::{Blockers, Nearest};
 
-/// The list of objects, gone through from end to end (course text, section 3.1).
+/// The list of objects, gone through from end to end, part by part (course text, section 3.1).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct List;
 
 impl Accelerator for List {
     fn closest(&self, objects: &[Object<'_>], ray: &Ray, counters: &mut Counters) -> Option<Hit> {
-        let mut ray = *ray;
-        let mut nearest = None;
-        for (index, object) in objects.iter().enumerate() {
-            let ray_object = ray.transformed(&object.object_from_world);
-            if let Some(crossing) = object.surface.closest(&ray_object, counters) {
-                ray.t_max = crossing.t;
-                nearest = Some(Hit { object: index as u32, crossing });
-            }
+        let mut nearest = Nearest::new(objects, ray);
+        for object in 0..objects.len() as u32 {
+            nearest.ask_parts(object, counters);
         }
-        nearest
+        nearest.hit
     }
 
     fn occluded(
@@ -30,13 +26,11 @@ impl Accelerator for List {
         counters: &mut Counters,
         blocks: &dyn Fn(&Hit) -> bool,
     ) -> bool {
-        let mut ray = *ray;
-        while let Some(hit) = self.closest(objects, &ray, counters) {
-            if blocks(&hit) {
-                return true;
-            }
-            ray.t_min = hit.crossing.t;
-        }
-        false
+        let mut blockers = Blockers::new(objects, ray, blocks);
+        (0..objects.len() as u32).any(|object| blockers.parts_block(object, counters))
+    }
+
+    fn memory_bytes(&self) -> usize {
+        0
     }
 }
