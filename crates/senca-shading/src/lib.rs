@@ -29,7 +29,7 @@ pub use attenuation::{distance_attenuation, inverse_square, polynomial_attenuati
 pub use fog::{apply_fog, fog_share};
 pub use light::{AREA_SAMPLES_PER_SIDE, Incident, Lamp, ShadingLight};
 pub use metallic_roughness::{
-    MetallicRoughnessConstants, fresnel_schlick, ggx_distribution, metallic_roughness,
+    MetallicRoughnessConstants, fresnel_schlick, ggx_distribution, grazing_viewer, metallic_roughness,
     metallic_roughness_brdf, smith_visibility, uniform_environment,
 };
 pub use normal_map::{face_towards, perturb_normal, tangent_frame, with_occlusion};

@@ -87,6 +87,21 @@ pub fn metallic_roughness_brdf(
     constants.diffuse * ((1.0 - dielectric) * FRAC_1_PI) + fresnel * facets
 }
 
+/// Least cosine between a normal and the direction to the observer.
+const LEAST_COSINE: f32 = 1e-3;
+
+/// The direction to the observer, at least grazing: interpolated normals may lean away from the
+/// observer at the rim. Unit vectors.
+#[must_use]
+#[inline]
+pub fn grazing_viewer(normal: Vec3, to_viewer: Vec3) -> Vec3 {
+    let cos = normal.dot(to_viewer);
+    if cos >= LEAST_COSINE {
+        return to_viewer;
+    }
+    (to_viewer + normal * (LEAST_COSINE - cos)).normalize_or(normal)
+}
+
 /// Light that leaves `point` towards the observer: each light through the BRDF (times pi, see the
 /// crate's units), and ambient light as an even environment of radiance Ia. `occlusion` in [0, 1] is
 /// the share of ambient light that reaches the point.
@@ -97,14 +112,8 @@ pub fn metallic_roughness(
     constants: &MetallicRoughnessConstants,
     occlusion: f32,
 ) -> LinearRgb {
-    // Interpolated normals may lean away from the observer at the rim; there the view grazes.
-    let n_v = point.normal.dot(point.to_viewer).max(1e-3);
-    let to_viewer = if point.normal.dot(point.to_viewer) < 1e-3 {
-        (point.to_viewer + point.normal * (1e-3 - point.normal.dot(point.to_viewer)))
-            .normalize_or(point.normal)
-    } else {
-        point.to_viewer
-    };
+    let n_v = point.normal.dot(point.to_viewer).max(LEAST_COSINE);
+    let to_viewer = grazing_viewer(point.normal, point.to_viewer);
     let mut sum = LinearRgb::BLACK;
     if rig.ambient != LinearRgb::BLACK {
         sum += rig.ambient * uniform_environment(constants, n_v) * occlusion;

@@ -1,25 +1,32 @@
 //! Recursive ray tracing (course text, chapter 3), and path tracing as ground truth.
 
 pub mod accel;
+pub mod antialias;
 mod counters;
 mod error;
+mod film;
 mod intersect;
 mod material;
 mod mesh_surface;
 mod primary;
 mod ray;
+pub mod recursive;
 mod sampler;
 pub mod textbook;
 mod texture;
 mod world;
 
 pub use accel::{Accel, AccelSettings};
-pub use counters::Counters;
+pub use counters::{Counters, RayCounts, TraceCounts};
 pub use error::TraceError;
 pub use intersect::{
     Crossing, Crossings, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum, Intersect, PlaneSurface, Polygon,
     Prism, Revolution, Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
 };
+#[cfg(test)]
+mod test_support;
+
+pub use film::{Area, Film, FilmReport, FilmSettings, Integrator, SamplePlace, Watch};
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use primary::PrimaryRays;
 

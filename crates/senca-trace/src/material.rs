@@ -146,6 +146,16 @@ impl<'s> MaterialTable<'s> {
         self.entry(material).constant.emission
     }
 
+    /// What alpha means for the material.
+    pub(crate) fn alpha_mode(&self, material: usize) -> AlphaMode {
+        self.entry(material).alpha_mode
+    }
+
+    /// The material where nothing varies.
+    pub(crate) fn constant(&self, material: usize) -> &MaterialPoint {
+        &self.entry(material).constant
+    }
+
     fn entry(&self, material: usize) -> &Entry<'s> {
         &self.entries[material.min(self.entries.len() - 1)]
     }
@@ -299,24 +309,11 @@ fn constant_of(material: &Material, reflection: ReflectionPoint, alpha: f32) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use senca_math::glam::{DVec2, DVec3};
+    use crate::test_support::interaction_facing_z;
     use senca_scene::{ImageData, ImageId, MetallicRoughness, Phong, Texture, TextureId, TextureImage, Wrap};
 
     fn place(material: usize) -> Interaction {
-        Interaction {
-            point: DVec3::ZERO,
-            normal: DVec3::Z,
-            shading_normal: DVec3::Z,
-            to_viewer: DVec3::Z,
-            entering: true,
-            texcoords: [DVec2::splat(0.5); 2],
-            tangent: DVec3::X,
-            handedness: 1.0,
-            color: Vec4::ONE,
-            material,
-            object: 0,
-            error: 0.0,
-        }
+        Interaction { material, ..interaction_facing_z() }
     }
 
     /// A scene with one material and one texture of one texel.

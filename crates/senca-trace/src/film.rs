@@ -1,0 +1,367 @@
+//! The film: what gathers samples into a picture.
+//!
+//! Pixels are taken tile by tile, tiles by all threads, samples of a pixel always in the same order,
+//! so the picture is the same for any number of threads. A film may be exposed in several goes
+//! ([`Film::expose`] with more and more samples): it keeps sums, and the sum of two goes is that of
+//! one.
+
+mod adaptive;
+
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use senca_math::{Control, Image};
+
+use crate::antialias::{Antialiasing, Places};
+use crate::{Pattern, Sampler, TraceCounts, TraceError};
+
+/// Side of a tile in pixels.
+const TILE: u32 = 16;
+
+/// Where a sample lies.
+#[derive(Clone, Copy, Debug)]
+pub struct SamplePlace {
+    /// Pixels from the left edge of the picture.
+    pub x: f64,
+    /// Pixels from its upper edge.
+    pub y: f64,
+    /// Row of the pixel it belongs to.
+    pub row: u32,
+    /// Where its random numbers come from. The first dimension is the place in the pixel.
+    pub sampler: Sampler,
+}
+
+/// What finds the light at places of the picture. Shared by all threads.
+pub trait Integrator: Sync {
+    /// What a thread keeps from one sample to the next.
+    type Work: Default + Send;
+
+    /// Red, green and blue times the share of the place that is covered, and that share.
+    fn sample(&self, place: &SamplePlace, work: &mut Self::Work) -> [f32; 4];
+
+    /// What was done with `work` so far.
+    fn counts(work: &Self::Work) -> TraceCounts;
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Area {
+    /// First column.
+    pub x: u32,
+    /// First row from the top.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Area {
+    fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Tiles that cover it, row by row.
+    fn tiles(&self) -> Vec<Self> {
+        let starts = |length: u32| (0..length.div_ceil(TILE)).map(|i| i * TILE);
+        let tile = |x: u32, y: u32| Self {
+            x: self.x + x,
+            y: self.y + y,
+            width: TILE.min(self.width - x),
+            height: TILE.min(self.height - y),
+        };
+        starts(self.height).flat_map(|y| starts(self.width).map(move |x| tile(x, y))).collect()
+    }
+
+    /// Columns and rows of its pixels, row by row.
+    fn places(self) -> impl Iterator<Item = (u32, u32)> {
+        (self.y..self.y + self.height).flat_map(move |y| (self.x..self.x + self.width).map(move |x| (x, y)))
+    }
+
+    /// Number of a pixel of this area.
+    fn index(&self, x: u32, y: u32) -> usize {
+        (y - self.y) as usize * self.width as usize + (x - self.x) as usize
+    }
+}
+
+/// What a film is made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmSettings {
+    /// Width and height of the whole picture in pixels.
+    pub size: [u32; 2],
+    /// The part of it on this film; it lies inside.
+    pub area: Area,
+    /// How pixels are sampled.
+    pub antialiasing: Antialiasing,
+    /// Seed of random numbers.
+    pub seed: u64,
+}
+
+/// Sums of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    settings: FilmSettings,
+    /// Per pixel of the area.
+    sums: Vec<Exposure>,
+    /// Samples that every pixel has.
+    samples: u32,
+}
+
+/// What a pixel has gathered.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Exposure {
+    /// Sum of colours times alpha, and of alpha.
+    sum: [f32; 4],
+    /// Sum of weights.
+    weight: f32,
+    /// Number of samples.
+    count: u32,
+}
+
+impl Exposure {
+    #[inline]
+    fn add(&mut self, color: [f32; 4], weight: f32) {
+        self.sum = std::array::from_fn(|k| self.sum[k] + weight * color[k]);
+        self.weight += weight;
+        self.count += 1;
+    }
+
+    /// Mean, colours times alpha. Of adaptive supersampling the sum is the mean already.
+    fn mean(&self) -> [f32; 4] {
+        if self.count == 0 {
+            return [0.0; 4];
+        }
+        // With a filter that is negative in places, few samples may cancel.
+        let weight = if self.weight.abs() < 0.25 { self.count as f32 } else { self.weight };
+        self.sum.map(|v| v / weight)
+    }
+}
+
+/// The caller's hold on an exposure, beyond [`Control`].
+#[derive(Default)]
+pub struct Watch<'a> {
+    /// Time after which no further pass is begun. One pass is always made. Default: none, and all
+    /// samples are taken in one pass.
+    pub time_limit: Option<Duration>,
+    /// Called between passes, at most every [`Watch::SAVE_EVERY`], and at the end.
+    pub save: Option<&'a mut dyn FnMut(&Film)>,
+}
+
+impl Watch<'_> {
+    /// Time between two calls of [`Watch::save`].
+    pub const SAVE_EVERY: Duration = Duration::from_secs(10);
+}
+
+impl std::fmt::Debug for Watch<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Watch").field("time_limit", &self.time_limit).finish_non_exhaustive()
+    }
+}
+
+/// What an exposure took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FilmReport {
+    /// Rays and tests of this exposure.
+    pub counts: TraceCounts,
+    /// Samples of this exposure, over all pixels.
+    pub samples: u64,
+    /// Samples of each pixel on the film; of adaptive supersampling, the mean, rounded.
+    pub samples_per_pixel: u32,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+impl Film {
+    /// An unexposed film.
+    ///
+    /// # Errors
+    /// [`TraceError::Setting`] when the way of sampling is out of its range.
+    pub fn new(settings: &FilmSettings) -> Result<Self, TraceError> {
+        settings.antialiasing.check()?;
+        let sums = vec![Exposure::default(); settings.area.pixels()];
+        Ok(Self { settings: *settings, sums, samples: 0 })
+    }
+
+    /// What it is made for.
+    #[must_use]
+    pub fn settings(&self) -> &FilmSettings {
+        &self.settings
+    }
+
+    /// Samples that every pixel has so far; of adaptive supersampling, 1 once it is done.
+    #[must_use]
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// Takes samples until every pixel has those that the settings ask for, or time is up.
+    ///
+    /// # Errors
+    /// [`TraceError::Cancelled`]; the film then holds the passes that were finished.
+    pub fn expose<I: Integrator>(
+        &mut self,
+        integrator: &I,
+        watch: &mut Watch<'_>,
+        control: &Control<'_>,
+    ) -> Result<FilmReport, TraceError> {
+        let start = Instant::now();
+        let mut report = match Places::of(&self.settings.antialiasing) {
+            Some(places) => self.expose_in_passes(integrator, &places, watch, control)?,
+            None => self.expose_adaptively(integrator, control)?,
+        };
+        if let Some(save) = &mut watch.save {
+            save(self);
+        }
+        let taken: u64 = self.sums.iter().map(|e| u64::from(e.count)).sum();
+        let pixels = self.sums.len().max(1) as u64;
+        report.samples_per_pixel = ((taken + pixels / 2) / pixels) as u32;
+        report.seconds = start.elapsed().as_secs_f64();
+        control.report(1.0);
+        Ok(report)
+    }
+
+    /// All samples at once, or one after the other where the caller wants to interrupt.
+    fn expose_in_passes<I: Integrator>(
+        &mut self,
+        integrator: &I,
+        places: &Places,
+        watch: &mut Watch<'_>,
+        control: &Control<'_>,
+    ) -> Result<FilmReport, TraceError> {
+        let (start, mut saved) = (Instant::now(), Instant::now());
+        let wanted = self.settings.antialiasing.samples();
+        let first = self.samples;
+        let step = if watch.time_limit.is_some() || watch.save.is_some() { 1 } else { wanted };
+        let mut report = FilmReport::default();
+        while self.samples < wanted {
+            let range = self.samples..wanted.min(self.samples + step);
+            let progress = Progress { control, from: first, to: wanted, range: range.clone() };
+            self.expose_pass(integrator, places, range, &progress, &mut report)?;
+            if watch.time_limit.is_some_and(|limit| start.elapsed() >= limit) {
+                break;
+            }
+            if let Some(save) = watch.save.as_mut().filter(|_| saved.elapsed() >= Watch::SAVE_EVERY) {
+                save(self);
+                saved = Instant::now();
+            }
+        }
+        Ok(report)
+    }
+
+    /// The samples of one range of numbers, of all pixels.
+    fn expose_pass<I: Integrator>(
+        &mut self,
+        integrator: &I,
+        places: &Places,
+        range: std::ops::Range<u32>,
+        progress: &Progress<'_>,
+        report: &mut FilmReport,
+    ) -> Result<(), TraceError> {
+        let area = self.settings.area;
+        let seed = self.settings.seed;
+        let sums = &self.sums;
+        let tile_of = |work: &mut I::Work, tile: &Area| {
+            let before = I::counts(work);
+            let mut exposures = Vec::with_capacity(tile.pixels());
+            for (x, y) in tile.places() {
+                if progress.control.is_cancelled() {
+                    return None;
+                }
+                let mut exposure = sums[area.index(x, y)];
+                for sample in range.clone() {
+                    let mut sampler = Sampler::new(Pattern::Sobol, seed, x, y, sample);
+                    let (within, weight) = places.place(sample, &mut sampler);
+                    let place = SamplePlace {
+                        x: f64::from(x) + within.x,
+                        y: f64::from(y) + within.y,
+                        row: y,
+                        sampler,
+                    };
+                    exposure.add(integrator.sample(&place, work), weight);
+                }
+                exposures.push(exposure);
+            }
+            Some((exposures, I::counts(work).since(&before)))
+        };
+        let tiles = area.tiles();
+        let done = in_tiles::<I, _>(&tiles, progress, tile_of)?;
+        for (tile, (exposures, counts)) in tiles.iter().zip(done) {
+            for ((x, y), exposure) in tile.places().zip(exposures) {
+                self.sums[area.index(x, y)] = exposure;
+            }
+            report.counts += counts;
+        }
+        report.samples += u64::from(range.end - range.start) * area.pixels() as u64;
+        self.samples = range.end;
+        Ok(())
+    }
+
+    /// The picture so far, of the size of the film's area. With `transparent`, colours are divided by
+    /// alpha where something shows through, as [`Image`] wants them.
+    #[must_use]
+    pub fn develop(&self, transparent: bool) -> Image {
+        let Area { width, height, .. } = self.settings.area;
+        let mut image = Image::new(width, height, [0.0; 4]);
+        for (pixel, exposure) in image.pixels_mut().iter_mut().zip(&self.sums) {
+            let [r, g, b, a] = exposure.mean();
+            let divides = transparent && a > 0.0 && a < 1.0;
+            *pixel = if divides { [r / a, g / a, b / a, a] } else { [r, g, b, a] };
+        }
+        image
+    }
+
+    /// How many samples each pixel has, as a picture: black for none, white for `most`.
+    #[must_use]
+    pub fn samples_map(&self) -> Image {
+        let Area { width, height, .. } = self.settings.area;
+        let most = self.sums.iter().map(|e| e.count).max().unwrap_or(0).max(1) as f32;
+        let mut image = Image::new(width, height, [0.0; 4]);
+        for (pixel, exposure) in image.pixels_mut().iter_mut().zip(&self.sums) {
+            let share = exposure.count as f32 / most;
+            *pixel = [share, share, share, 1.0];
+        }
+        image
+    }
+}
+
+/// Tells the caller how far the work has come.
+struct Progress<'a> {
+    control: &'a Control<'a>,
+    /// Samples at the start and the end of all passes.
+    from: u32,
+    to: u32,
+    /// Samples of this pass.
+    range: std::ops::Range<u32>,
+}
+
+impl Progress<'_> {
+    /// A share of this pass is done.
+    fn report(&self, share: f32) {
+        let all = (self.to - self.from).max(1) as f32;
+        let before = (self.range.start - self.from) as f32;
+        let own = (self.range.end - self.range.start) as f32;
+        self.control.report((before + share * own) / all);
+    }
+}
+
+/// Runs `work` for every tile on all threads; results are in the order of tiles.
+fn in_tiles<I: Integrator, T: Send>(
+    tiles: &[Area],
+    progress: &Progress<'_>,
+    work: impl Fn(&mut I::Work, &Area) -> Option<T> + Sync,
+) -> Result<Vec<T>, TraceError> {
+    let done = Mutex::new(0usize);
+    let results: Option<Vec<T>> = tiles
+        .par_iter()
+        .with_max_len(1)
+        .map_init(I::Work::default, |state, tile| {
+            let result = work(state, tile)?;
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            *done += 1;
+            progress.report(*done as f32 / tiles.len() as f32);
+            Some(result)
+        })
+        .collect();
+    results.ok_or(TraceError::Cancelled)
+}
