@@ -31,6 +31,7 @@ pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use primary::PrimaryRays;
 
 pub use ray::Ray;
+pub use recursive::RecursiveSettings;
 pub use sampler::{Pattern, Sampler};
 pub use senca_math::Control;
 pub use world::{Hit, Interaction, Object, World, WorldSettings};

@@ -2,6 +2,7 @@
 
 use senca_math::ViewError;
 use senca_pipeline::RenderError;
+use senca_trace::TraceError;
 
 /// Why [`render`](crate::render) gave no picture. Variants come in the order caller, input.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +30,22 @@ pub enum Error {
     /// The pipeline gave no picture.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The tracer gave no picture.
+    #[error(transparent)]
+    Trace(TraceError),
+    /// The settings contradict each other.
+    #[error("{0}")]
+    Combination(String),
+}
+
+impl From<TraceError> for Error {
+    /// Whoever cancels need not know what was cancelled.
+    fn from(error: TraceError) -> Self {
+        match error {
+            TraceError::Cancelled => Self::Render(RenderError::Cancelled),
+            other => Self::Trace(other),
+        }
+    }
 }
 
 /// `the scene has: "a", "b"`, or that it has none, or none with a name.
@@ -50,6 +67,8 @@ impl Error {
         match self {
             Self::UnknownCamera { .. } | Self::UnknownAnimation { .. } => true,
             Self::View(_) => false,
+            Self::Trace(error) => matches!(error, TraceError::Setting { .. }),
+            Self::Combination(_) => true,
             Self::Render(error) => {
                 matches!(error, Crop { .. } | EmptyImage { .. } | ImageTooLarge { .. } | Setting { .. })
             }

@@ -2,7 +2,7 @@
 //!
 //! This crate is the front door: it names the rooms of the house and joins them. The rooms are
 //! crates of their own, reachable as modules here: [`math`], [`scene`], [`io`], [`shading`],
-//! [`raster`] and [`pipeline`].
+//! [`raster`], [`pipeline`] and [`mod@trace`].
 //!
 //! [`render`] draws a scene in one call; [`io::load`] reads one from a file of any format:
 //!
@@ -22,12 +22,13 @@ mod line_drawing;
 mod prepare;
 mod render;
 mod settings;
+mod traced;
 
 pub use error::Error;
 pub use line_drawing::render_svg;
 pub use prepare::{Prepared, prepare};
 pub use render::{Report, render, render_with};
-pub use settings::{LookAt, Moment, Settings, Viewpoint};
+pub use settings::{LookAt, Method, Moment, Settings, Tracing, Viewpoint};
 
 pub use senca_io as io;
 pub use senca_math as math;
@@ -37,3 +38,4 @@ pub use senca_raster as raster;
 pub use senca_scene as scene;
 pub use senca_scene::Scene;
 pub use senca_shading as shading;
+pub use senca_trace as trace;

@@ -8,7 +8,7 @@ use senca_pipeline::Control;
 use senca_scene::{Background, Scene};
 
 use crate::prepare::{Prepared, default_background, prepare};
-use crate::{Error, Settings};
+use crate::{Error, Method, Settings, traced};
 
 /// Counters and times of one picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Report {
     pub prepare_seconds: f64,
     /// What the pipeline tells.
     pub drawing: senca_pipeline::Report,
+    /// What the tracer tells, where one drew.
+    pub tracing: Option<senca_trace::FilmReport>,
 }
 
 /// Draws `scene` into a new picture.
@@ -62,13 +64,18 @@ pub fn render_with(
     let prepare_seconds = start.elapsed().as_secs_f64();
     let drawing = drawing_settings(&mut prepared, settings);
     let [width, height] = prepared.size;
+    if settings.method == Method::Trace {
+        let traced = traced::draw(&prepared, &drawing, &settings.tracing, control)?;
+        let report = Report { prepare_seconds, tracing: Some(traced.report), ..Report::default() };
+        return Ok((traced.image, report));
+    }
     let mut image = Image::new(width, height, [0.0; 4]);
     let report = senca_pipeline::render_with(&prepared.scene, &prepared.view, &drawing, &mut image, control)?;
     let image = match &settings.crop {
         Some(crop) => cut_out(&image, crop),
         None => image,
     };
-    Ok((image, Report { prepare_seconds, drawing: report }))
+    Ok((image, Report { prepare_seconds, drawing: report, tracing: None }))
 }
 
 /// The pipeline's settings, with the crop and a background: the caller's, white paper for line

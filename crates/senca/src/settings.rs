@@ -2,6 +2,9 @@
 
 use senca_math::glam::DVec3;
 use senca_pipeline::Crop;
+use senca_trace::RecursiveSettings;
+use senca_trace::antialias::Antialiasing;
+use std::time::Duration;
 
 /// What is drawn, from where, when and how. The default draws the scene as it is: 1024 x 768 pixels
 /// or what of them the camera's proportions leave, from its first camera, in the pose of its file.
@@ -19,8 +22,34 @@ pub struct Settings {
     pub yfov: Option<f64>,
     /// When. Default: the pose of the file.
     pub moment: Option<Moment>,
-    /// How. The picture's crop goes into [`Settings::crop`]; the one in here is not looked at.
+    /// By which method. Default [`Method::Raster`].
+    pub method: Method,
+    /// How. The picture's crop goes into [`Settings::crop`]; the one in here is not looked at. The
+    /// tracer looks at shading, threads, culling, filter and background.
     pub drawing: senca_pipeline::Settings,
+    /// How rays are traced, where they are.
+    pub tracing: Tracing,
+}
+
+/// The ways to make a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// The standard pipeline.
+    #[default]
+    Raster,
+    /// Recursive ray tracing.
+    Trace,
+}
+
+/// How rays are traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tracing {
+    /// How they are followed. Light model, backs and filter are taken from [`Settings::drawing`].
+    pub recursive: RecursiveSettings,
+    /// How pixels are sampled. Default: one ray through the middle.
+    pub antialiasing: Antialiasing,
+    /// Time after which no further sample is begun; every pixel gets one. Default: none.
+    pub time_limit: Option<Duration>,
 }
 
 /// From where a scene is seen.

@@ -7,7 +7,7 @@ use senca::io::toml_scene::{RenderHints, ShadingHint};
 use senca::math::glam::DVec3;
 use senca::pipeline::Shading;
 use senca::scene::Filter;
-use senca::{LookAt, Moment, Settings, Viewpoint, pipeline};
+use senca::{LookAt, Method, Moment, Settings, Viewpoint, pipeline};
 
 use crate::cli::Failure;
 use crate::cli::values::{BackgroundChoice, Crop, Size, not_negative, positive, stops, triple, view_angle};
@@ -68,9 +68,9 @@ pub(crate) struct OutputArguments {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct DrawingArguments {
-    /// How the scene is drawn: raster [default: raster]
-    #[arg(long, value_name = "METHOD", value_parser = method, default_value = "raster", hide_default_value = true)]
-    pub(crate) method: Method,
+    /// How the scene is drawn: raster or trace [default: the scene's, or raster]
+    #[arg(long, value_name = "METHOD", value_parser = method)]
+    pub(crate) method: Option<Method>,
 
     /// How surfaces look [default: material]
     #[arg(long, value_enum, value_name = "SHADING")]
@@ -159,20 +159,15 @@ pub(crate) struct RunningArguments {
     pub(crate) quiet: bool,
 }
 
-/// The ways of drawing that are built in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Method {
-    /// The standard pipeline.
-    Raster,
-}
-
+/// The method of this name.
 fn method(text: &str) -> Result<Method, String> {
     match text {
         "raster" => Ok(Method::Raster),
-        "trace" | "path" | "radiosity" => {
-            Err(format!("drawing by {text} is not built into this version; it has: raster"))
+        "trace" => Ok(Method::Trace),
+        "radiosity" => {
+            Err(format!("drawing by {text} is not built into this version; it has: raster, trace"))
         }
-        _ => Err("there is one method in this version: raster".to_owned()),
+        _ => Err("the methods of this version are: raster, trace".to_owned()),
     }
 }
 
@@ -272,6 +267,8 @@ impl Arguments {
             viewpoint: hinted.unwrap_or_default(),
             yfov: self.view.fov.map(f64::to_radians),
             moment: self.view.moment(hints.time),
+            method: self.drawing.method.unwrap_or_default(),
+            tracing: senca::Tracing::default(),
             drawing: pipeline::Settings {
                 shading: self.drawing.shading.map(Into::into).or(shading).unwrap_or_default(),
                 samples: self.drawing.samples_per_pixel(hints.samples)?,
