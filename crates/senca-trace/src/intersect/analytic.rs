@@ -20,11 +20,31 @@ pub(crate) trait Analytic: Send + Sync + std::fmt::Debug {
     /// does not admit may be named or not. The ray is valid.
     fn each_crossing(&self, ray: &Ray, meet: &mut impl FnMut(f64, u32, DVec2));
 
+    /// The nearest crossing that the valid ray admits.
+    #[inline]
+    fn nearest(&self, ray: &Ray) -> Option<Crossing> {
+        nearest_of_all(self, ray)
+    }
+
     /// See [`Intersect::surface_point`].
     fn surface_point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint;
 
     /// See [`Intersect::is_closed`].
     fn is_closed(&self) -> bool;
+}
+
+/// The nearest of all crossings that the ray admits.
+#[inline]
+pub(crate) fn nearest_of_all<S: Analytic + ?Sized>(surface: &S, ray: &Ray) -> Option<Crossing> {
+    let mut nearest = None;
+    let mut limit = ray.t_max;
+    surface.each_crossing(ray, &mut |t, part, uv| {
+        if t > ray.t_min && t < limit {
+            limit = t;
+            nearest = Some(Crossing { t, part, uv });
+        }
+    });
+    nearest
 }
 
 impl<S: Analytic> Intersect for S {
@@ -35,27 +55,7 @@ impl<S: Analytic> Intersect for S {
     #[inline]
     fn closest(&self, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
         counters.tests += 1;
-        let mut nearest = None;
-        let mut limit = ray.t_max;
-        if ray.is_valid() {
-            self.each_crossing(ray, &mut |t, part, uv| {
-                if t > ray.t_min && t < limit {
-                    limit = t;
-                    nearest = Some(Crossing { t, part, uv });
-                }
-            });
-        }
-        nearest
-    }
-
-    #[inline]
-    fn occludes(&self, ray: &Ray, counters: &mut Counters) -> bool {
-        counters.tests += 1;
-        let mut met = false;
-        if ray.is_valid() {
-            self.each_crossing(ray, &mut |t, _, _| met |= ray.admits(t));
-        }
-        met
+        if ray.is_valid() { self.nearest(ray) } else { None }
     }
 
     fn crossings(&self, ray: &Ray, counters: &mut Counters, out: &mut Crossings) {

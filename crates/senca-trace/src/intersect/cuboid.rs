@@ -34,35 +34,46 @@ impl Cuboid {
     }
 }
 
+/// Where a line enters and leaves a box, and through which sides.
+///
+/// A line in the plane of a side counts as inside on the negative sides only, so that of boxes that share
+/// a side exactly one is met.
+#[inline]
+pub(super) fn box_ends(min: DVec3, max: DVec3, ray: &Ray) -> Option<[(f64, u32); 2]> {
+    let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
+    for (axis, sides) in SIDES.iter().enumerate() {
+        let direction = ray.direction[axis];
+        let (near, far) = slab(ray.origin[axis], direction, min[axis], max[axis]);
+        let forward = usize::from(direction > 0.0);
+        if near > enter.0 {
+            enter = (near, sides[1 - forward]);
+        }
+        if far < leave.0 {
+            leave = (far, sides[forward]);
+        }
+    }
+    (enter.0 < leave.0).then_some([enter, leave])
+}
+
+/// Outward normal of a side and the direction to the right, seen from outside.
+pub(super) fn side_frame(side: u32) -> (DVec3, DVec3) {
+    FRAMES[side as usize % FRAMES.len()]
+}
+
 impl Analytic for Cuboid {
     fn bounds(&self) -> Aabb {
         Aabb { min: -self.half, max: self.half }
     }
 
-    /// A line in the plane of a side counts as inside on the negative sides only, so that of boxes that
-    /// share a side exactly one is met.
     #[inline]
     fn each_crossing(&self, ray: &Ray, meet: &mut impl FnMut(f64, u32, DVec2)) {
-        let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
-        for (axis, sides) in SIDES.iter().enumerate() {
-            let direction = ray.direction[axis];
-            let (near, far) = slab(ray.origin[axis], direction, -self.half[axis], self.half[axis]);
-            let forward = usize::from(direction > 0.0);
-            if near > enter.0 {
-                enter = (near, sides[1 - forward]);
-            }
-            if far < leave.0 {
-                leave = (far, sides[forward]);
-            }
-        }
-        if enter.0 < leave.0 {
-            meet(enter.0, enter.1, DVec2::ZERO);
-            meet(leave.0, leave.1, DVec2::ZERO);
+        for (t, side) in box_ends(-self.half, self.half, ray).into_iter().flatten() {
+            meet(t, side, DVec2::ZERO);
         }
     }
 
     fn surface_point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
-        let (normal, right) = FRAMES[crossing.part as usize % FRAMES.len()];
+        let (normal, right) = side_frame(crossing.part);
         let up = normal.cross(right);
         let inside = ray.at(crossing.t).clamp(-self.half, self.half);
         let point = inside - normal * normal.dot(inside) + normal * self.half;
