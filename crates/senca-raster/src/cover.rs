@@ -11,9 +11,9 @@
 use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, TextureUnit};
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
-use crate::sample::sample;
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::target::Clear;
+use crate::textured::{TextureQueue, Waiting};
 use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
@@ -152,6 +152,7 @@ pub(crate) struct TileDraw<'a, 'b, const FAST: bool> {
     pub(crate) band: &'a Band<'b>,
     pub(crate) buffer: &'a mut TileBuffer,
     pub(crate) batch: &'a mut Batch,
+    pub(crate) queue: &'a mut TextureQueue,
     /// First pixel of the tile in the target.
     pub(crate) tile: [i32; 2],
     /// Pixels of the target that may be written, of this tile.
@@ -183,9 +184,9 @@ fn along<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, row: f32x16<S>, fx: f32x
 }
 
 /// Where a vector is.
-#[derive(Clone, Copy)]
-struct Place {
-    lane: usize,
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Place {
+    pub(crate) lane: usize,
     block: usize,
     pair: usize,
 }
@@ -208,6 +209,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         for lane in 0..self.batch.len.min(LANES) {
             self.triangle(simd, lane);
         }
+        self.shade_waiting(simd);
         self.batch.len = 0;
     }
 
@@ -392,6 +394,15 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         bits: u16,
     ) -> mask32x16<S> {
         let lane = place.lane;
+        if self.pass.texture.is_some() {
+            let (x, y) =
+                ((place.block % BLOCKS * 8) as i32, (8 * (place.block / BLOCKS) + 2 * place.pair) as i32);
+            let b = &self.batch.offset;
+            let offset = [(b[0][lane] + x) as f32, (b[1][lane] + y) as f32];
+            self.counts.shaded += u64::from(bits.count_ones());
+            self.wait(simd, Waiting { place, offset, bits });
+            return pass;
+        }
         let mut keep = pass;
         let rgba = match self.pass.color {
             ColorPath::None => return pass,
@@ -413,14 +424,6 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 ]
             }
         };
-        let rgba = match self.pass.texture {
-            None => rgba,
-            Some((unit, slot)) => {
-                let at = self.at(simd, lane, fx, row.fy);
-                let texel = sample(simd, unit, self.batch, lane, slot, &at, pass);
-                [rgba[0] * texel[0], rgba[1] * texel[1], rgba[2] * texel[2], rgba[3] * texel[3]]
-            }
-        };
         self.counts.shaded += u64::from(bits.count_ones());
         self.write(simd, place, keep, rgba);
         keep
@@ -428,7 +431,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// Weights at 16 pixels; see [`Setup::weights`].
     #[inline(always)]
-    fn at<S: Simd>(&self, simd: S, lane: usize, fx: f32x16<S>, fy: f32x16<S>) -> At<S> {
+    pub(crate) fn at<S: Simd>(&self, simd: S, lane: usize, fx: f32x16<S>, fy: f32x16<S>) -> At<S> {
         let b = &*self.batch;
         let one = f32x16::splat(simd, 1.0);
         if b.affine >> lane & 1 == 1 {
@@ -474,7 +477,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     }
 
     #[inline(always)]
-    fn write<S: Simd>(&mut self, simd: S, place: Place, keep: mask32x16<S>, rgba: Rgba<S>) {
+    pub(crate) fn write<S: Simd>(&mut self, simd: S, place: Place, keep: mask32x16<S>, rgba: Rgba<S>) {
         let Place { block, pair, .. } = place;
         let format = if FAST { ColorFormat::Rgba8 } else { self.pass.format };
         let blend = if FAST { None } else { self.pass.state.blend };
@@ -512,8 +515,17 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 }
 
 #[inline(always)]
-fn splat4<S: Simd>(simd: S, [r, g, b, a]: [f32; 4]) -> Rgba<S> {
+pub(crate) fn splat4<S: Simd>(simd: S, [r, g, b, a]: [f32; 4]) -> Rgba<S> {
     [f32x16::splat(simd, r), f32x16::splat(simd, g), f32x16::splat(simd, b), f32x16::splat(simd, a)]
+}
+
+/// Columns and rows of 16 pixels, the first of which is at `offset`.
+#[inline(always)]
+pub(crate) fn lanes_from<S: Simd>(simd: S, [x, y]: [f32; 2]) -> [f32x16<S>; 2] {
+    [
+        f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, x),
+        f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, y),
+    ]
 }
 
 /// Values of edge `k` at the vector at column 0, row `y` of the tile.
@@ -537,7 +549,14 @@ pub(crate) fn varying<S: Simd>(simd: S, terms: &PlaneLanes, lane: usize, at: &At
 
 /// The colour in three or four slots.
 #[inline(always)]
-fn colors<S: Simd>(simd: S, b: &Batch, lane: usize, first: usize, alpha: bool, at: &At<S>) -> Rgba<S> {
+pub(crate) fn colors<S: Simd>(
+    simd: S,
+    b: &Batch,
+    lane: usize,
+    first: usize,
+    alpha: bool,
+    at: &At<S>,
+) -> Rgba<S> {
     let slot = &b.varyings;
     [
         varying(simd, &slot[first % MAX_VARYINGS], lane, at),

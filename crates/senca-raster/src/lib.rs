@@ -58,6 +58,7 @@ mod setup;
 mod shade;
 mod target;
 mod texture;
+mod textured;
 mod tile;
 mod tiled;
 

@@ -1,9 +1,9 @@
 //! Textures read for sixteen fragments at once: the vector twin of [`Sampler::sample`].
 //!
 //! Texels of 8 bits are mixed with weights of 8 bits in integers, so the position between texels is
-//! resolved to 1/256; the sums keep all their 16 bits. Two texels beside each other are fetched as one
-//! 64-bit word except where the coordinate wraps between them. Floating-point textures are mixed in
-//! floating point, to the bits of the plain form.
+//! resolved to 1/256; the sums keep all their 16 bits. Floating-point textures are mixed in floating
+//! point, to the bits of the plain form. [`crate::textured`] does the usual filters of 8-bit texels
+//! for many vectors at a time.
 //!
 //! The level of detail comes from the exact derivatives at each fragment, not from differences.
 
@@ -56,7 +56,7 @@ fn sample_inline<S: Simd>(
     if !mips && sampler.magnify == sampler.minify {
         return read(simd, sampler, &texture.levels[0], uv, sampler.minify);
     }
-    let lod = lod(simd, sampler, texture, batch, lane, [tu, tv], at);
+    let lod = lod_of(simd, sampler, footprint(simd, texture, batch, lane, slot, at, uv));
     let zero = F::splat(simd, 0.0);
     let minified = lod.simd_gt(zero) & mask;
     let mut out = [zero; 4];
@@ -100,23 +100,6 @@ fn one_level<S: Simd>(
     if sampler.mip != Mip::Linear {
         return read(simd, sampler, fine, uv, sampler.minify);
     }
-    if sampler.minify == Filter::Linear
-        && let (Texels::Rgba8(fine_texels), Texels::Rgba8(coarse_texels)) = (&fine.texels, &coarse.texels)
-    {
-        let (a, b) = (taps(simd, sampler, fine, uv), taps(simd, sampler, coarse, uv));
-        if (a.beside & b.beside).all_true() {
-            // All texels are fetched before the first is used: what is written lane by lane can only be
-            // read as a vector once the writing is over, and so that wait comes once.
-            let (mut from_fine, mut from_coarse) = (Quads::default(), Quads::default());
-            fetch(fine_texels, &a, &mut from_fine);
-            fetch(coarse_texels, &b, &mut from_coarse);
-            return lerp(
-                mixed(simd, quads(simd, &from_fine), &a),
-                mixed(simd, quads(simd, &from_coarse), &b),
-                t,
-            );
-        }
-    }
     let fine = read(simd, sampler, fine, uv, sampler.minify);
     let coarse = read(simd, sampler, coarse, uv, sampler.minify);
     lerp(fine, coarse, t)
@@ -128,45 +111,55 @@ fn select4<S: Simd>(mask: mask32x16<S>, a: Rgba<S>, b: Rgba<S>) -> Rgba<S> {
 }
 
 #[inline(always)]
-fn lerp<S: Simd>(a: Rgba<S>, b: Rgba<S>, t: F<S>) -> Rgba<S> {
+pub(crate) fn lerp<S: Simd>(a: Rgba<S>, b: Rgba<S>, t: F<S>) -> Rgba<S> {
     [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t, a[3] + (b[3] - a[3]) * t]
 }
 
-/// Level of detail; see [`Sampler::lod`].
+/// Level of detail, from the square of the longer side of a pixel; see [`Sampler::lod`].
 #[inline(always)]
-fn lod<S: Simd>(
+pub(crate) fn lod_of<S: Simd>(simd: S, sampler: &Sampler, footprint: F<S>) -> F<S> {
+    F::splat(simd, 0.5) * log2(simd, footprint) + F::splat(simd, sampler.lod_bias)
+}
+
+/// Square of the longer side of a pixel, in texels of level 0. Derivatives as in
+/// [`crate::shade::derivatives`].
+#[inline(always)]
+pub(crate) fn footprint<S: Simd>(
     simd: S,
-    sampler: &Sampler,
     texture: &Texture,
     batch: &Batch,
     lane: usize,
-    [tu, tv]: [&PlaneLanes; 2],
+    slot: usize,
     at: &At<S>,
+    [u, v]: [F<S>; 2],
 ) -> F<S> {
-    let term = |t: &PlaneLanes, k: usize| t[k][lane % LANES];
-    let [u1, u2, v1, v2] = [term(tu, 1), term(tu, 2), term(tv, 1), term(tv, 2)];
-    let ([u1, u2], [v1, v2]) =
-        ([F::splat(simd, u1), F::splat(simd, u2)], [F::splat(simd, v1), F::splat(simd, v2)]);
-    let [[ux, vx], [uy, vy]] = if at.affine {
-        [[u1, v1], [u2, v2]]
-    } else {
-        let x = weight_change(simd, batch, lane, at, 1);
-        let y = weight_change(simd, batch, lane, at, 2);
-        [[x[0] * u1 + x[1] * u2, x[0] * v1 + x[1] * v2], [y[0] * u1 + y[1] * u2, y[0] * v1 + y[1] * v2]]
-    };
+    let (tu, tv) = (&batch.varyings[slot % MAX_VARYINGS], &batch.varyings[(slot + 1) % MAX_VARYINGS]);
     let (w, h) = (F::splat(simd, texture.width() as f32), F::splat(simd, texture.height() as f32));
-    let (x, y) = (square(ux * w, vx * h), square(uy * w, vy * h));
-    let larger = x.simd_gt(y).select(x, y);
-    F::splat(simd, 0.5) * log2(simd, larger) + F::splat(simd, sampler.lod_bias)
+    let (x, y) = (
+        square(change(simd, batch, lane, at, tu, u, 1) * w, change(simd, batch, lane, at, tv, v, 1) * h),
+        square(change(simd, batch, lane, at, tu, u, 2) * w, change(simd, batch, lane, at, tv, v, 2) * h),
+    );
+    x.simd_gt(y).select(x, y)
 }
 
-/// Change of the weights of corners 1 and 2 per pixel in x (`axis` 1) or y (2).
+/// Change of a varying per pixel in x (`axis` 1) or y (2).
 #[inline(always)]
-fn weight_change<S: Simd>(simd: S, batch: &Batch, lane: usize, at: &At<S>, axis: usize) -> [F<S>; 2] {
+fn change<S: Simd>(
+    simd: S,
+    batch: &Batch,
+    lane: usize,
+    at: &At<S>,
+    terms: &PlaneLanes,
+    value: F<S>,
+    axis: usize,
+) -> F<S> {
     let lane = lane % LANES;
-    let [b1, b2, w] = at.weights;
-    let q = F::splat(simd, batch.inv_w[axis][lane]);
-    [(F::splat(simd, batch.b1[axis][lane]) - b1 * q) * w, (F::splat(simd, batch.b2[axis][lane]) - b2 * q) * w]
+    if at.affine {
+        return F::splat(simd, terms[axis][lane]);
+    }
+    let whole = batch.b1[axis][lane] * terms[1][lane] + batch.b2[axis][lane] * terms[2][lane];
+    let part = (value - F::splat(simd, terms[0][lane])) * F::splat(simd, batch.inv_w[axis][lane]);
+    (F::splat(simd, whole) - part) * at.weights[2]
 }
 
 #[inline(always)]
@@ -208,17 +201,24 @@ fn read_inline<S: Simd>(
 ) -> Rgba<S> {
     match filter {
         Filter::Nearest => nearest(simd, sampler, level, uv),
-        Filter::Linear => bilinear(simd, level, &taps(simd, sampler, level, uv)),
+        Filter::Linear => bilinear(simd, level, &taps::<S, false>(simd, sampler, level, uv)),
     }
 }
 
-/// See [`TexelGrid::position`]; held within +-[`FARTHEST_TEXEL`], 0 where it is not a number.
+/// Coordinates within this of 0 are within [`FARTHEST_TEXEL`] in texels of any texture.
+pub(crate) const FARTHEST_TAME: f32 = 30_000.0;
+
+/// See [`TexelGrid::position`]; held within +-[`FARTHEST_TEXEL`], 0 where it is not a number. Neither
+/// is looked after when all of `u` is `TAME`: within [`FARTHEST_TAME`] of 0.
 #[inline(always)]
-fn position<S: Simd>(simd: S, grid: TexelGrid, u: F<S>, n: u32) -> F<S> {
+fn position<S: Simd, const TAME: bool>(simd: S, grid: TexelGrid, u: F<S>, n: u32) -> F<S> {
     let p = match grid {
         TexelGrid::Areas => u * F::splat(simd, n as f32) - F::splat(simd, 0.5),
         TexelGrid::Points => u * F::splat(simd, (n - 1) as f32),
     };
+    if TAME {
+        return p;
+    }
     let number = p.is_nan().select(F::splat(simd, 0.0), p);
     number.max(F::splat(simd, -FARTHEST_TEXEL)).min(F::splat(simd, FARTHEST_TEXEL))
 }
@@ -255,8 +255,8 @@ fn remainder<S: Simd>(simd: S, i: I<S>, n: i32) -> I<S> {
 
 #[inline(always)]
 fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Rgba<S> {
-    let x = position(simd, sampler.grid, uv[0], level.width);
-    let y = position(simd, sampler.grid, uv[1], level.height);
+    let x = position::<S, false>(simd, sampler.grid, uv[0], level.width);
+    let y = position::<S, false>(simd, sampler.grid, uv[1], level.height);
     let half = F::splat(simd, 0.5);
     let i = wrapped(simd, sampler.wrap_u, (x + half).floor().to_int(), level.width);
     let j = wrapped(simd, sampler.wrap_v, (y + half).floor().to_int(), level.height);
@@ -272,21 +272,35 @@ fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>;
 }
 
 /// Where the four texels around a position are, and the position between them, 0 to 256.
-struct Taps<S: Simd> {
+pub(crate) struct Taps<S: Simd> {
     /// Column of the left ones, and of the right ones.
-    columns: [I<S>; 2],
+    pub(crate) columns: [I<S>; 2],
     /// First texel of the upper row, and of the lower.
-    rows: [I<S>; 2],
+    pub(crate) rows: [I<S>; 2],
     s: F<S>,
     t: F<S>,
     /// The right ones follow the left ones in memory.
-    beside: mask32x16<S>,
+    pub(crate) beside: mask32x16<S>,
+}
+
+impl<S: Simd> Taps<S> {
+    /// Position between the texels, in 1/256.
+    #[inline(always)]
+    pub(crate) fn between(&self, simd: S) -> [I<S>; 2] {
+        let (scale, half) = (F::splat(simd, 256.0), F::splat(simd, 0.5));
+        [(self.s * scale + half).to_int(), (self.t * scale + half).to_int()]
+    }
 }
 
 #[inline(always)]
-fn taps<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Taps<S> {
-    let x = position(simd, sampler.grid, uv[0], level.width);
-    let y = position(simd, sampler.grid, uv[1], level.height);
+pub(crate) fn taps<S: Simd, const TAME: bool>(
+    simd: S,
+    sampler: &Sampler,
+    level: &TextureLevel,
+    uv: [F<S>; 2],
+) -> Taps<S> {
+    let x = position::<S, TAME>(simd, sampler.grid, uv[0], level.width);
+    let y = position::<S, TAME>(simd, sampler.grid, uv[1], level.height);
     let (fx, fy) = (x.floor(), y.floor());
     let (i, j): (I<S>, I<S>) = (fx.to_int(), fy.to_int());
     let one = I::splat(simd, 1);
@@ -302,15 +316,10 @@ fn taps<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]
 fn bilinear<S: Simd>(simd: S, level: &TextureLevel, taps: &Taps<S>) -> Rgba<S> {
     let ([i0, i1], [row0, row1]) = (taps.columns, taps.rows);
     match &level.texels {
-        Texels::Rgba8(texels) if taps.beside.all_true() => {
-            let mut from = Quads::default();
-            fetch(texels, taps, &mut from);
-            mixed(simd, quads(simd, &from), taps)
-        }
         Texels::Rgba8(texels) => {
             let upper = [gather(simd, texels, row0 + i0), gather(simd, texels, row0 + i1)];
             let lower = [gather(simd, texels, row1 + i0), gather(simd, texels, row1 + i1)];
-            mixed(simd, [upper, lower], taps)
+            mixed(simd, [upper, lower], taps.between(simd))
         }
         Texels::Rgba32F(texels) => {
             let at = |row: I<S>, i: I<S>| (row + i).to_array();
@@ -327,18 +336,11 @@ fn bilinear<S: Simd>(simd: S, level: &TextureLevel, taps: &Taps<S>) -> Rgba<S> {
 }
 
 /// Texels beside each other, by lane: upper rows, then lower.
-type Quads = [[[[u32; 2]; LANES / 2]; 2]; 2];
-
-#[inline(always)]
-fn fetch<S: Simd>(texels: &[[u8; 4]], taps: &Taps<S>, out: &mut Quads) {
-    let [upper, lower] = out;
-    gather_word_pairs(texels, &(taps.rows[0] + taps.columns[0]).to_array(), upper.as_flattened_mut());
-    gather_word_pairs(texels, &(taps.rows[1] + taps.columns[0]).to_array(), lower.as_flattened_mut());
-}
+pub(crate) type Quads = [[[[u32; 2]; LANES / 2]; 2]; 2];
 
 /// Upper left and right, lower left and right.
 #[inline(always)]
-fn quads<S: Simd>(simd: S, from: &Quads) -> [[u32x16<S>; 2]; 2] {
+pub(crate) fn quads<S: Simd>(simd: S, from: &Quads) -> [[u32x16<S>; 2]; 2] {
     let a = u32x16::from_slice(simd, from[0][0].as_flattened());
     let b = u32x16::from_slice(simd, from[0][1].as_flattened());
     let c = u32x16::from_slice(simd, from[1][0].as_flattened());
@@ -348,10 +350,11 @@ fn quads<S: Simd>(simd: S, from: &Quads) -> [[u32x16<S>; 2]; 2] {
 
 /// Mean of four texels, weighted by the position between them.
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, [[t00, t10], [t01, t11]]: [[u32x16<S>; 2]; 2], taps: &Taps<S>) -> Rgba<S> {
-    let (scale, half) = (F::splat(simd, 256.0), F::splat(simd, 0.5));
-    let s: I<S> = (taps.s * scale + half).to_int();
-    let t: I<S> = (taps.t * scale + half).to_int();
+pub(crate) fn mixed<S: Simd>(
+    simd: S,
+    [[t00, t10], [t01, t11]]: [[u32x16<S>; 2]; 2],
+    [s, t]: [I<S>; 2],
+) -> Rgba<S> {
     let w11 = (s * t + I::splat(simd, 128)) >> 8;
     let weights = [I::splat(simd, 256) - s - t + w11, s - w11, t - w11, w11];
     let texels = [t00, t10, t01, t11];
@@ -391,9 +394,10 @@ fn gather_words(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [u32; LANES]
     }
 }
 
+/// Texels and those after them; 0 where there are none.
 #[inline(never)]
-fn gather_word_pairs(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [[u32; 2]]) {
-    for (to, &i) in out.iter_mut().zip(index) {
+pub(crate) fn pair_texels(texels: &[[u8; 4]], index: &[[i32; LANES]; 2], out: &mut Quads) {
+    for (to, &i) in out.as_flattened_mut().as_flattened_mut().iter_mut().zip(index.as_flattened()) {
         let i = i as u32 as usize;
         if let Some(&[a, b]) = texels.get(i..i + 2) {
             *to = [u32::from_le_bytes(a), u32::from_le_bytes(b)];
@@ -402,7 +406,7 @@ fn gather_word_pairs(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [[u32; 
 }
 
 #[inline(always)]
-fn load4<S: Simd>(simd: S, planes: &[[f32; LANES]; 4]) -> Rgba<S> {
+pub(crate) fn load4<S: Simd>(simd: S, planes: &[[f32; LANES]; 4]) -> Rgba<S> {
     [
         F::load_array_ref(simd, &planes[0]),
         F::load_array_ref(simd, &planes[1]),

@@ -20,16 +20,27 @@ pub(crate) fn interpolate(
     }
 }
 
-/// Change of varyings `k` and `k + 1` per pixel: `[[ux, vx], [uy, vy]]`.
-fn derivatives(setup: &Setup, varyings: &TriangleVaryings, k: usize, [b1, b2, w]: [f32; 3]) -> [[f32; 2]; 2] {
-    let (u, v) = (varyings.terms[k], varyings.terms[k + 1]);
+/// Change of varyings `k` and `k + 1`, which are `values` there, per pixel: `[[ux, vx], [uy, vy]]`.
+///
+/// With weights `b = B w`, where `B` and `q = 1/w` are linear on the screen, a varying is
+/// `u0 + b1 u1 + b2 u2`; its change along an axis is `(B1' u1 + B2' u2 - (u - u0) q') w`.
+pub(crate) fn derivatives(
+    setup: &Setup,
+    varyings: &TriangleVaryings,
+    k: usize,
+    w: f32,
+    values: [f32; 2],
+) -> [[f32; 2]; 2] {
+    let terms = [varyings.terms[k], varyings.terms[k + 1]];
     if setup.affine {
-        return [[u[1], v[1]], [u[2], v[2]]];
+        return [terms.map(|t| t[1]), terms.map(|t| t[2])];
     }
-    let (p1, p2, q) = (&setup.b1, &setup.b2, &setup.q);
-    let (b1x, b2x) = ((p1.dx - b1 * q.dx) * w, (p2.dx - b2 * q.dx) * w);
-    let (b1y, b2y) = ((p1.dy - b1 * q.dy) * w, (p2.dy - b2 * q.dy) * w);
-    [[b1x * u[1] + b2x * u[2], b1x * v[1] + b2x * v[2]], [b1y * u[1] + b2y * u[2], b1y * v[1] + b2y * v[2]]]
+    let (b1, b2, q) = (&setup.b1, &setup.b2, &setup.q);
+    let change = |k: usize, b1: f32, b2: f32, q: f32| {
+        let [u0, u1, u2] = terms[k];
+        ((b1 * u1 + b2 * u2) - (values[k] - u0) * q) * w
+    };
+    [[0, 1].map(|k| change(k, b1.dx, b2.dx, q.dx)), [0, 1].map(|k| change(k, b1.dy, b2.dy, q.dy))]
 }
 
 /// Fills `out` for the lanes of `fragments`.
@@ -76,5 +87,5 @@ fn texture_at(
     let k = unit.coords.min(crate::api::MAX_VARYINGS - 2);
     let weights = setup.weights(fx, fy);
     let uv = [k, k + 1].map(|k| varyings.at(k, setup.affine, [fx, fy], weights));
-    unit.sampler.sample(unit.texture, uv, derivatives(setup, varyings, k, weights))
+    unit.sampler.sample(unit.texture, uv, derivatives(setup, varyings, k, weights[2], uv))
 }

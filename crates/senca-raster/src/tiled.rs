@@ -9,6 +9,7 @@ use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::target::{Clear, Target};
+use crate::textured::TextureQueue;
 use crate::tile::{Band, ColorFormat, TileBuffer, bands};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Mutex;
@@ -55,7 +56,8 @@ impl TiledRasterizer {
     /// of the vertices, and about 150 000 per thread.
     #[must_use]
     pub fn scratch_bytes(&self) -> usize {
-        let per_thread = size_of::<Scratch>() + TileBuffer::BYTES + Batch::BOXED_BYTES;
+        let per_thread =
+            size_of::<Scratch>() + TileBuffer::BYTES + Batch::BOXED_BYTES + TextureQueue::BOXED_BYTES;
         self.vertices.capacity() * size_of::<ScreenVertex>()
             + self.runs.iter().map(Run::bytes).sum::<usize>()
             + self.scratch.len() * per_thread
@@ -259,6 +261,7 @@ impl Frame<'_> {
                 band,
                 buffer: &mut scratch.tile,
                 batch: &mut scratch.batch,
+                queue: &mut scratch.queue,
                 tile: [x, y],
                 bounds,
                 partial: bounds != whole,
@@ -348,6 +351,7 @@ fn three(values: [&[f32]; 3], first: usize) -> Option<[&[f32; 3]; 3]> {
 struct Scratch {
     tile: TileBuffer,
     batch: Batch,
+    queue: TextureQueue,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {

@@ -2,9 +2,10 @@
 
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Blend, Buffers, Clear, ColorPlane, Compare, Counters, Cull, DepthBias, FragmentShader, Fragments, Ids,
-    Interpolation, Primitives, Rasterizer, Rect, ScanlineRasterizer, Shaded, Shading, SimdLevel, State,
-    Target, TiledRasterizer, TiledSettings, Viewport,
+    Blend, Buffers, Clear, ColorPlane, ColorSource, Compare, Counters, Cull, DepthBias, FragmentShader,
+    Fragments, Ids, Interpolation, Primitives, Rasterizer, Rect, Sampler, ScanlineRasterizer, Shaded,
+    Shading, SimdLevel, State, Target, Texels, Texture, TextureUnit, TiledRasterizer, TiledSettings,
+    Viewport,
 };
 
 /// Numbers in [0, 1), the same in every run.
@@ -168,6 +169,37 @@ impl FragmentShader for Probe {
             out.set(i, [f.varyings[1][i], dx + dy, f.depth[i] + f32::from(u8::from(f.front)), f.id as f32]);
             if (f.column(i) + 3 * f.row(i)).is_multiple_of(5) {
                 out.discard(i);
+            }
+        }
+    }
+}
+
+#[test]
+fn textured_triangles_of_all_sizes_agree() {
+    let texel =
+        |i: u32| [(i * 37 % 251) as u8, (i * 91 % 256) as u8, (i % 16 * 16) as u8, 128 + (i % 128) as u8];
+    let bytes: Vec<[u8; 4]> = (0..48 * 20).map(texel).collect();
+    let mesh = Mesh::random(7, 400);
+    let over = State { depth_test: Compare::Always, blend: Some(Blend::OVER), ..State::default() };
+    for texels in [
+        Texels::Rgba32F(bytes.iter().map(|t| t.map(|v| f32::from(v) / 255.0)).collect()),
+        Texels::Rgba8(bytes),
+    ] {
+        let exact = matches!(texels, Texels::Rgba32F(_));
+        let texture = Texture::new(48, 20, texels).unwrap().with_mipmaps();
+        let unit = TextureUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 2 };
+        for color in [ColorSource::Constant([1.0, 0.5, 0.25, 0.5]), ColorSource::Rgba { first: 0 }] {
+            let shading = Shading::Fixed { color, texture: Some(unit) };
+            for state in [State::default(), over] {
+                let (plain, _) = draw(&mut ScanlineRasterizer, [150, 90], &mesh, &state, &shading);
+                let (reference, _) = draw(&mut tiled(1, levels()[0]), [150, 90], &mesh, &state, &shading);
+                let pixels = plain.color.pixels().iter().zip(reference.color.pixels());
+                let apart = pixels.flat_map(|(a, b)| (0..4).map(|k| (a[k] - b[k]).abs())).fold(0.0, f32::max);
+                assert!(apart <= if exact { 0.0 } else { 0.016 }, "{apart}");
+                for (threads, level) in levels().into_iter().map(|l| (1, l)).chain([(3, SimdLevel::new())]) {
+                    let (found, _) = draw(&mut tiled(threads, level), [150, 90], &mesh, &state, &shading);
+                    assert!(bits(&found) == bits(&reference), "{threads} threads, {level:?}");
+                }
             }
         }
     }
