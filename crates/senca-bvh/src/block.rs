@@ -50,32 +50,31 @@ impl Block {
     pub(crate) fn meet<S: Simd>(
         &self,
         simd: S,
-        ray: &LaneRay<S>,
+        ray: &LaneRay<'_, S>,
         count: u32,
         t_max: f32,
     ) -> Option<BlockHits> {
         let zero = f32x8::splat(simd, 0.0);
-        let [kx, ky, kz] = ray.prepared.axes;
-        let shear = ray.prepared.shear.map(|s| f32x8::splat(simd, s));
-        let relative = |corner: usize, axis: usize| {
-            f32x8::load_array_ref(simd, &self.corners[corner][axis])
-                - f32x8::splat(simd, ray.prepared.origin[axis])
-        };
+        let shear_x = f32x8::splat(simd, ray.prepared.shear[0]);
+        let shear_y = f32x8::splat(simd, ray.prepared.shear[1]);
 
         // 1. Corners in the space where the ray is the z axis.
-        let z = [0, 1, 2].map(|corner| relative(corner, kz));
-        let x = [0, 1, 2].map(|corner| relative(corner, kx) - shear[0] * z[corner]);
-        let y = [0, 1, 2].map(|corner| relative(corner, ky) - shear[1] * z[corner]);
+        let [kx, ky, kz] = ray.prepared.axes;
+        let (az, bz, cz) =
+            (self.row(simd, ray, 0, kz), self.row(simd, ray, 1, kz), self.row(simd, ray, 2, kz));
+        let (ax, ay) = (self.row(simd, ray, 0, kx) - shear_x * az, self.row(simd, ray, 0, ky) - shear_y * az);
+        let (bx, by) = (self.row(simd, ray, 1, kx) - shear_x * bz, self.row(simd, ray, 1, ky) - shear_y * bz);
+        let (cx, cy) = (self.row(simd, ray, 2, kx) - shear_x * cz, self.row(simd, ray, 2, ky) - shear_y * cz);
 
-        // 2. Edge functions. All have the sign of their sum, or are 0, where the ray passes inside.
-        let u = x[2] * y[1] - y[2] * x[1];
-        let v = x[0] * y[2] - y[0] * x[2];
-        let w = x[1] * y[0] - y[1] * x[0];
+        // 2. Edge functions. All have the same sign, or are 0, where the ray passes inside.
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
         let det = u + v + w;
         let low = min_or(u, min_or(v, w));
         let high = max_or(u, max_or(v, w));
         let inside = low.simd_ge(zero) | high.simd_le(zero) | !det.simd_eq(det);
-        let candidates = inside.to_bitmask() as u32 & (u32::MAX >> (32 - count));
+        let candidates = inside.to_bitmask() as u32 & (255 >> (8 - count));
         if candidates == 0 {
             return None;
         }
@@ -88,11 +87,14 @@ impl Block {
         let safe = safe.to_bitmask() as u32 & candidates;
 
         // 4. The distance, within the triangle's box.
-        let t = (u * (shear[2] * z[0]) + v * (shear[2] * z[1]) + w * (shear[2] * z[2])) / det;
+        let shear_z = f32x8::splat(simd, ray.prepared.shear[2]);
+        let t = (u * (shear_z * az) + v * (shear_z * bz) + w * (shear_z * cz)) / det;
         let mut enter = f32x8::splat(simd, f32::NEG_INFINITY);
         let mut leave = f32x8::splat(simd, f32::INFINITY);
         for axis in 0..3 {
-            let [a, b, c] = [0, 1, 2].map(|corner| relative(corner, axis));
+            let a = self.row(simd, ray, 0, axis);
+            let b = self.row(simd, ray, 1, axis);
+            let c = self.row(simd, ray, 2, axis);
             let (min, max) = (a.min(b).min(c), a.max(b).max(c));
             let (near, far) = if ray.prepared.downward[axis] { (max, min) } else { (min, max) };
             enter = max_or(near * ray.near_reciprocal[axis], enter);
@@ -110,6 +112,13 @@ impl Block {
             self.meet_exactly(ray.prepared, candidates & !safe, t_max, &mut hits);
         }
         Some(hits)
+    }
+
+    /// One coordinate of one corner, from the ray's origin.
+    #[inline(always)]
+    fn row<S: Simd>(&self, simd: S, ray: &LaneRay<'_, S>, corner: usize, axis: usize) -> f32x8<S> {
+        f32x8::load_array_ref(simd, &self.corners[corner][axis])
+            - f32x8::splat(simd, ray.prepared.origin[axis])
     }
 
     /// Adds the triangles of `mask` that are met, one by one.

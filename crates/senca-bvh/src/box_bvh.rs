@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::build::{Item, build};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
-use crate::traverse::{LaneRay, Visitor, walk};
+use crate::traverse::{LaneRay, MAX_DEPTH, SHALLOW, Visitor, stack_size, walk};
 use crate::{Aabb32, BuildError, BuildSettings, Ray32, TraversalCounts};
 
 /// A hierarchy over boxes, whose contents the caller tests: instances, spheres, patches.
@@ -20,6 +20,8 @@ pub struct BoxBvh {
     /// Items by leaf.
     items: Vec<u32>,
     bounds: Aabb32,
+    /// Levels of nodes.
+    depth: usize,
     level: Level,
 }
 
@@ -42,7 +44,13 @@ impl BoxBvh {
             .collect();
         let tree = build(items, 1);
         let items = tree.leaves.iter().map(|leaf| tree.items[leaf.0 as usize]).collect();
-        Ok(Self { nodes: tree.nodes, items, bounds: tree.extent.as_box(), level: settings.level })
+        Ok(Self {
+            nodes: tree.nodes,
+            items,
+            bounds: tree.extent.as_box(),
+            depth: tree.depth,
+            level: settings.level,
+        })
     }
 
     /// The box around all boxes; empty if there are none.
@@ -120,7 +128,12 @@ impl BoxBvh {
     #[inline]
     fn walk<V: Visitor>(&self, ray: &Ray32, visitor: &mut V) {
         if let Some(prepared) = PreparedRay::new(ray) {
-            dispatch!(self.level, simd => walk(simd, &self.nodes, &prepared, visitor));
+            // A short stack is cheaper to make.
+            if self.depth <= SHALLOW {
+                dispatch!(self.level, simd => walk::<_, _, { stack_size(SHALLOW) }>(simd, &self.nodes, &prepared, visitor));
+            } else {
+                dispatch!(self.level, simd => walk::<_, _, { stack_size(MAX_DEPTH) }>(simd, &self.nodes, &prepared, visitor));
+            }
         }
     }
 }

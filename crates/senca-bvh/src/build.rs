@@ -29,6 +29,8 @@ pub(crate) struct Tree {
     /// Indices of the caller, leaf by leaf.
     pub(crate) items: Vec<u32>,
     pub(crate) extent: Extent,
+    /// Levels of nodes.
+    pub(crate) depth: usize,
 }
 
 /// Items from `start` to `end` with the box of them and the box of their centres.
@@ -51,6 +53,8 @@ impl Set {
 struct Arena {
     nodes: Vec<Node>,
     leaves: Vec<(u32, u32)>,
+    /// Levels of nodes, counted from the root of the whole tree.
+    depth: usize,
 }
 
 /// Leaves hold from 1 to `max_leaf` items.
@@ -69,7 +73,7 @@ pub(crate) fn build(mut items: Vec<Item>, max_leaf: usize) -> Tree {
     let set = Set { start: 0, end: items.len(), extent, centers };
     let arena = grow_parallel(&mut items, set, max_leaf, 0);
     let items = items.par_iter().map(Item::index).collect();
-    Tree { nodes: arena.nodes, leaves: arena.leaves, items, extent }
+    Tree { nodes: arena.nodes, leaves: arena.leaves, items, extent, depth: arena.depth }
 }
 
 /// The subtree over `items`, which are those of `set`; its root is node 0.
@@ -94,7 +98,9 @@ fn grow_parallel(items: &mut [Item], set: Set, max_leaf: usize, depth: usize) ->
         })
         .collect();
     arena.nodes.push(Node::EMPTY);
-    for (slot, (child, part)) in children.iter().zip(arenas).enumerate() {
+    arena.depth = depth + 1;
+    let slots = slots(&set, &children);
+    for ((slot, child), part) in slots.into_iter().zip(&children).zip(arenas) {
         let reference = match part {
             Some(part) => arena.append(part),
             None => arena.leaf(*child),
@@ -115,7 +121,9 @@ fn grow(
 ) -> Child {
     let index = arena.nodes.len();
     arena.nodes.push(Node::EMPTY);
-    for (slot, child) in children_of(items, offset, set, max_leaf, depth).into_iter().enumerate() {
+    arena.depth = arena.depth.max(depth + 1);
+    let children = children_of(items, offset, set, max_leaf, depth);
+    for (slot, child) in slots(&set, &children).into_iter().zip(children) {
         let reference = if child.len() <= max_leaf {
             arena.leaf(child)
         } else {
@@ -136,11 +144,12 @@ impl Arena {
         let (nodes, leaves) = (self.nodes.len(), self.leaves.len());
         for node in &mut other.nodes {
             for child in &mut node.children {
-                *child = child.shifted(nodes, leaves);
+                *child = Child(*child).shifted(nodes, leaves).0;
             }
         }
         self.nodes.append(&mut other.nodes);
         self.leaves.append(&mut other.leaves);
+        self.depth = self.depth.max(other.depth);
         Child::node(nodes)
     }
 }
@@ -162,6 +171,39 @@ fn children_of(items: &mut [Item], offset: usize, set: Set, max_leaf: usize, dep
         children.insert(largest, left);
     }
     children
+}
+
+/// A slot for each child, so that bit by bit it says on which side of the middle of `set` the child is; see
+/// [`crate::order`]. The child farthest towards a corner chooses first.
+fn slots(set: &Set, children: &[Set]) -> [usize; WIDTH] {
+    let middle = set.extent.center2();
+    let mut scores = [[f32::NEG_INFINITY; WIDTH]; WIDTH];
+    for (child, scores) in children.iter().zip(&mut scores) {
+        let center = child.extent.center2();
+        let [x, y, z] = [0, 1, 2].map(|axis| center[axis] - middle[axis]);
+        for (slot, score) in scores.iter_mut().enumerate() {
+            let along = |d: f32, axis: usize| if slot >> axis & 1 == 1 { d } else { -d };
+            *score = along(x, 0) + along(y, 1) + along(z, 2);
+        }
+    }
+    let mut slots = [0; WIDTH];
+    let (mut children_left, mut slots_left) = ((1u32 << children.len()) - 1, (1u32 << WIDTH) - 1);
+    while children_left != 0 {
+        let (mut best, mut best_score) =
+            ((children_left.trailing_zeros(), slots_left.trailing_zeros()), f32::NEG_INFINITY);
+        for child in (0..WIDTH as u32).filter(|child| children_left >> child & 1 == 1) {
+            for slot in (0..WIDTH as u32).filter(|slot| slots_left >> slot & 1 == 1) {
+                let score = scores[child as usize][slot as usize];
+                if score > best_score {
+                    (best, best_score) = ((child, slot), score);
+                }
+            }
+        }
+        slots[best.0 as usize] = best.1 as usize;
+        children_left &= !(1 << best.0);
+        slots_left &= !(1 << best.1);
+    }
+    slots
 }
 
 fn size(set: &Set, balanced: bool) -> f32 {

@@ -25,6 +25,7 @@ mod brute;
 mod build;
 mod error;
 mod node;
+mod order;
 mod prepared;
 mod ray;
 mod traverse;

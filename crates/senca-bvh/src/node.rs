@@ -12,7 +12,8 @@ pub(crate) struct Node {
     /// Row `2 axis` is the smallest, row `2 axis + 1` the largest coordinate. Slots without a child hold
     /// boxes that no ray meets.
     pub(crate) bounds: [[f32; WIDTH]; 6],
-    pub(crate) children: [Child; WIDTH],
+    /// [`Child`]s.
+    pub(crate) children: [u32; WIDTH],
 }
 
 impl Node {
@@ -25,7 +26,7 @@ impl Node {
             [f32::INFINITY; WIDTH],
             [f32::NEG_INFINITY; WIDTH],
         ],
-        children: [Child(0); WIDTH],
+        children: [0; WIDTH],
     };
 
     pub(crate) fn set(&mut self, slot: usize, bounds: &Aabb32, child: Child) {
@@ -33,7 +34,7 @@ impl Node {
             self.bounds[2 * axis][slot] = bounds.min[axis];
             self.bounds[2 * axis + 1][slot] = bounds.max[axis];
         }
-        self.children[slot] = child;
+        self.children[slot] = child.0;
     }
 }
 

@@ -2,14 +2,21 @@
 
 use fearless_simd::{Simd, f32x8, prelude::*};
 
-use crate::node::{Child, Node};
+use crate::node::{Child, Node, WIDTH};
+use crate::order::{ORDERS, octant};
 use crate::prepared::PreparedRay;
 
 /// Levels of nodes a hierarchy may have; see the build.
 pub(crate) const MAX_DEPTH: usize = 64;
 
-/// Each level leaves at most seven siblings behind.
-const STACK: usize = 7 * MAX_DEPTH + 8;
+/// Most hierarchies have no more levels.
+pub(crate) const SHALLOW: usize = 12;
+
+/// Places on the stack for a hierarchy of so many levels of nodes: each leaves at most seven siblings
+/// behind, and all eight places after them are written.
+pub(crate) const fn stack_size(depth: usize) -> usize {
+    (WIDTH - 1) * depth + WIDTH
+}
 
 /// What is done at the leaves.
 pub(crate) trait Visitor {
@@ -35,16 +42,24 @@ pub(crate) struct LaneRay<'a, S: Simd> {
 impl<'a, S: Simd> LaneRay<'a, S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &'a PreparedRay) -> Self {
-        let splat = |values: [f32; 3]| values.map(|value| f32x8::splat(simd, value));
         Self {
             prepared: ray,
-            origin: splat(ray.origin),
-            near_reciprocal: splat(ray.near_reciprocal),
-            far_reciprocal: splat(ray.far_reciprocal),
+            origin: splat(simd, ray.origin),
+            near_reciprocal: splat(simd, ray.near_reciprocal),
+            far_reciprocal: splat(simd, ray.far_reciprocal),
             t_min: f32x8::splat(simd, ray.t_min),
-            near: [0, 1, 2].map(|axis| 2 * axis + usize::from(ray.downward[axis])),
+            near: [
+                usize::from(ray.downward[0]),
+                2 + usize::from(ray.downward[1]),
+                4 + usize::from(ray.downward[2]),
+            ],
         }
     }
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> [f32x8<S>; 3] {
+    [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)]
 }
 
 /// The larger of both; `keep` where `value` is NaN. `keep` is not.
@@ -83,15 +98,22 @@ fn meet<S: Simd>(simd: S, ray: &LaneRay<S>, node: &Node, t_max: f32) -> (f32x8<S
 }
 
 /// Visits the leaves whose boxes the ray meets between `t_min` and `t_max`, roughly from near to far.
-/// Ends when the visitor says so.
+/// Ends when the visitor says so. STACK is at least [`stack_size`] of the hierarchy.
 #[inline(always)]
-pub(crate) fn walk<S: Simd, V: Visitor>(simd: S, nodes: &[Node], ray: &PreparedRay, visitor: &mut V) {
+pub(crate) fn walk<S: Simd, V: Visitor, const STACK: usize>(
+    simd: S,
+    nodes: &[Node],
+    ray: &PreparedRay,
+    visitor: &mut V,
+) {
     if nodes.is_empty() {
         return;
     }
     let lanes = LaneRay::new(simd, ray);
+    let orders = &ORDERS[octant(ray)];
     let mut t_max = ray.t_max;
-    let mut stack = [(0f32, Child(0)); STACK];
+    let mut entries = [0f32; STACK];
+    let mut children = [0u32; STACK];
     let mut top = 0;
     let mut current = Child::node(0);
     loop {
@@ -102,19 +124,16 @@ pub(crate) fn walk<S: Simd, V: Visitor>(simd: S, nodes: &[Node], ray: &PreparedR
         } else {
             visitor.node();
             let node = &nodes[current.node_index()];
-            let (enter, mut mask) = meet(simd, &lanes, node, t_max);
-            let first = top;
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize & 7;
-                mask &= mask - 1;
-                let entry = (enter[lane], node.children[lane]);
-                let mut place = top;
-                while place > first && stack[place - 1].0 < entry.0 {
-                    stack[place] = stack[place - 1];
-                    place -= 1;
-                }
-                stack[place] = entry;
-                top += 1;
+            let (enter, mask) = meet(simd, &lanes, node, t_max);
+            if mask != 0 {
+                // All are put on the stack, the nearest last; it is taken without looking there.
+                let order = orders[mask as usize % 256];
+                let (enter, child) = order.arrange(simd, enter, &node.children);
+                entries[top..top + WIDTH].copy_from_slice(&enter);
+                children[top..top + WIDTH].copy_from_slice(&child);
+                top += mask.count_ones() as usize - 1;
+                current = Child(node.children[order.nearest()]);
+                continue;
             }
         }
         loop {
@@ -122,8 +141,8 @@ pub(crate) fn walk<S: Simd, V: Visitor>(simd: S, nodes: &[Node], ray: &PreparedR
                 return;
             }
             top -= 1;
-            if stack[top].0 <= t_max {
-                current = stack[top].1;
+            if entries[top] <= t_max {
+                current = Child(children[top]);
                 break;
             }
         }

@@ -8,7 +8,7 @@ use crate::block::{Block, LANES};
 use crate::build::{Item, build};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
-use crate::traverse::{LaneRay, Visitor, walk};
+use crate::traverse::{LaneRay, MAX_DEPTH, SHALLOW, Visitor, stack_size, walk};
 use crate::{Aabb32, BuildError, Ray32, TraversalCounts, TriangleHit};
 
 /// How a hierarchy is built. None of it changes an answer.
@@ -40,6 +40,8 @@ pub struct TriangleBvh {
     nodes: Vec<Node>,
     blocks: Vec<Block>,
     bounds: Aabb32,
+    /// Levels of nodes.
+    depth: usize,
     level: Level,
 }
 
@@ -72,7 +74,13 @@ impl TriangleBvh {
                 block
             })
             .collect();
-        Ok(Self { nodes: tree.nodes, blocks, bounds: tree.extent.as_box(), level: settings.level })
+        Ok(Self {
+            nodes: tree.nodes,
+            blocks,
+            bounds: tree.extent.as_box(),
+            depth: tree.depth,
+            level: settings.level,
+        })
     }
 
     /// The box around all triangles that can be met; empty if there are none.
@@ -215,7 +223,12 @@ impl TriangleBvh {
     #[inline]
     fn walk<V: Visitor>(&self, ray: &Ray32, visitor: &mut V) {
         if let Some(prepared) = PreparedRay::new(ray) {
-            dispatch!(self.level, simd => walk(simd, &self.nodes, &prepared, visitor));
+            // A short stack is cheaper to make.
+            if self.depth <= SHALLOW {
+                dispatch!(self.level, simd => walk::<_, _, { stack_size(SHALLOW) }>(simd, &self.nodes, &prepared, visitor));
+            } else {
+                dispatch!(self.level, simd => walk::<_, _, { stack_size(MAX_DEPTH) }>(simd, &self.nodes, &prepared, visitor));
+            }
         }
     }
 }

@@ -19,7 +19,7 @@ pub(crate) struct Plane {
 impl Plane {
     #[inline(always)]
     pub(crate) fn is_left(&self, item: &Item) -> bool {
-        self.scale.bin(item.center2()[self.axis], self.axis) < self.bin
+        self.scale.bin(item.extent.center2()[self.axis], self.axis) < self.bin
     }
 }
 
@@ -58,7 +58,7 @@ impl Bins {
     fn of(items: &[Item], scale: &Scale) -> Self {
         let mut bins = Self::EMPTY;
         for item in items {
-            let center2 = item.center2();
+            let center2 = item.extent.center2();
             for (axis, center2) in center2.into_iter().enumerate() {
                 let bin = scale.bin(center2, axis);
                 bins.extents[axis][bin] = bins.extents[axis][bin].union(item.extent);

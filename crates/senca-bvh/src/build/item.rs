@@ -44,6 +44,13 @@ impl Extent {
         -self.0[4 + axis]
     }
 
+    /// Twice the centre, per axis. Boxes without end have theirs at the origin.
+    #[inline(always)]
+    pub(crate) fn center2(&self) -> [f32; 3] {
+        let e = &self.0;
+        [e[0] - e[4], e[1] - e[5], e[2] - e[6]].map(|c| if c.is_finite() { c } else { 0.0 })
+    }
+
     pub(crate) fn as_box(&self) -> Aabb32 {
         let [x, y, z, _, nx, ny, nz, _] = self.0;
         Aabb32 { min: Vec3::new(x, y, z), max: Vec3::new(-nx, -ny, -nz) }
@@ -68,17 +75,10 @@ impl Item {
         self.extent.0[3].to_bits()
     }
 
-    /// Twice the centre, per axis. Boxes without end have theirs at the origin.
-    #[inline(always)]
-    pub(crate) fn center2(&self) -> [f32; 3] {
-        let e = &self.extent.0;
-        [e[0] - e[4], e[1] - e[5], e[2] - e[6]].map(|c| if c.is_finite() { c } else { 0.0 })
-    }
-
     /// Twice the centre, as a box.
     #[inline(always)]
     pub(crate) fn center(&self) -> Extent {
-        let [x, y, z] = self.center2();
+        let [x, y, z] = self.extent.center2();
         Extent([x, y, z, 0.0, -x, -y, -z, 0.0])
     }
 }
