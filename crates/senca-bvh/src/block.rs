@@ -3,9 +3,8 @@
 use fearless_simd::{Simd, f32x8, prelude::*};
 use senca_math::glam::Vec3;
 
-use crate::prepared::PreparedRay;
 use crate::traverse::{LaneRay, max_or, min_or};
-use crate::watertight::{SMALLEST_DETERMINANT, intersect};
+use crate::watertight::SMALLEST_DETERMINANT;
 
 /// Triangles of a block.
 pub(crate) const LANES: usize = 8;
@@ -21,12 +20,14 @@ pub(crate) struct Block {
 }
 
 /// Where a ray meets the triangles of a block.
-pub(crate) struct BlockHits {
+pub(crate) struct BlockHits<S: Simd> {
     /// Bit per triangle that is met between `t_min` and the limit given, which is still admitted.
     pub(crate) mask: u32,
-    pub(crate) t: [f32; LANES],
-    pub(crate) u: [f32; LANES],
-    pub(crate) v: [f32; LANES],
+    /// Bit per triangle that has to be tested by [`crate::watertight::intersect`].
+    pub(crate) unsure: u32,
+    pub(crate) t: f32x8<S>,
+    pub(crate) u: f32x8<S>,
+    pub(crate) v: f32x8<S>,
 }
 
 impl Block {
@@ -45,7 +46,7 @@ impl Block {
         self.corners.map(|rows| Vec3::from_array(rows.map(|row| row[lane])))
     }
 
-    /// The same decisions and bytes as [`intersect`], for `count` triangles at once.
+    /// The same decisions and bytes as [`crate::watertight::intersect`], for `count` triangles at once.
     #[inline(always)]
     pub(crate) fn meet<S: Simd>(
         &self,
@@ -53,7 +54,7 @@ impl Block {
         ray: &LaneRay<'_, S>,
         count: u32,
         t_max: f32,
-    ) -> Option<BlockHits> {
+    ) -> BlockHits<S> {
         let zero = f32x8::splat(simd, 0.0);
         let shear_x = f32x8::splat(simd, ray.prepared.shear[0]);
         let shear_y = f32x8::splat(simd, ray.prepared.shear[1]);
@@ -73,10 +74,10 @@ impl Block {
         let det = u + v + w;
         let low = min_or(u, min_or(v, w));
         let high = max_or(u, max_or(v, w));
-        let inside = low.simd_ge(zero) | high.simd_le(zero) | !det.simd_eq(det);
-        let candidates = inside.to_bitmask() as u32 & (255 >> (8 - count));
+        let outside = low.simd_lt(zero) & high.simd_gt(zero);
+        let candidates = !(outside.to_bitmask() as u32) & (255 >> (8 - count));
         if candidates == 0 {
-            return None;
+            return BlockHits { mask: 0, unsure: 0, t: zero, u: zero, v: zero };
         }
 
         // 3. Which of them need double precision.
@@ -102,16 +103,8 @@ impl Block {
         }
         let t = max_or(min_or(t, leave), enter);
         let met = enter.simd_le(leave) & t.simd_gt(ray.t_min) & t.simd_le(f32x8::splat(simd, t_max));
-        let mut hits = BlockHits {
-            mask: met.to_bitmask() as u32 & safe,
-            t: t.to_array(),
-            u: (v / det).to_array(),
-            v: (w / det).to_array(),
-        };
-        if safe != candidates {
-            self.meet_exactly(ray.prepared, candidates & !safe, t_max, &mut hits);
-        }
-        Some(hits)
+        let mask = met.to_bitmask() as u32 & safe;
+        BlockHits { mask, unsure: candidates & !safe, t, u: v / det, v: w / det }
     }
 
     /// One coordinate of one corner, from the ray's origin.
@@ -119,20 +112,5 @@ impl Block {
     fn row<S: Simd>(&self, simd: S, ray: &LaneRay<'_, S>, corner: usize, axis: usize) -> f32x8<S> {
         f32x8::load_array_ref(simd, &self.corners[corner][axis])
             - f32x8::splat(simd, ray.prepared.origin[axis])
-    }
-
-    /// Adds the triangles of `mask` that are met, one by one.
-    #[cold]
-    fn meet_exactly(&self, ray: &PreparedRay, mut mask: u32, t_max: f32, hits: &mut BlockHits) {
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            if let Some((t, u, v)) = intersect(ray, self.corners(lane))
-                && t <= t_max
-            {
-                hits.mask |= 1 << lane;
-                (hits.t[lane], hits.u[lane], hits.v[lane]) = (t, u, v);
-            }
-        }
     }
 }

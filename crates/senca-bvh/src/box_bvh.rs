@@ -140,6 +140,8 @@ impl BoxBvh {
 
 /// What the caller says to an item.
 trait Test {
+    const ANY: bool;
+
     /// May lower `t_max`, whose unit is `t_unit`. True ends the walk.
     fn item(&mut self, item: u32, t_max: &mut f32, t_unit: f32) -> bool;
 }
@@ -147,6 +149,8 @@ trait Test {
 struct Nearest<F>(F);
 
 impl<F: FnMut(u32, f32) -> Option<f32>> Test for Nearest<F> {
+    const ANY: bool = false;
+
     #[inline(always)]
     fn item(&mut self, item: u32, t_max: &mut f32, t_unit: f32) -> bool {
         if let Some(t) = (self.0)(item, *t_max * t_unit) {
@@ -162,6 +166,8 @@ struct Any<F> {
 }
 
 impl<F: FnMut(u32) -> bool> Test for Any<F> {
+    const ANY: bool = true;
+
     #[inline(always)]
     fn item(&mut self, item: u32, _: &mut f32, _: f32) -> bool {
         self.found = (self.test)(item);
@@ -176,6 +182,8 @@ struct Items<'a, T> {
 }
 
 impl<T: Test> Visitor for Items<'_, T> {
+    const ANY: bool = T::ANY;
+
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, _: S, ray: &LaneRay<'_, S>, leaf: Child, t_max: &mut f32) -> bool {
         self.counts.triangles += 1;

@@ -28,6 +28,7 @@ mod node;
 mod order;
 mod prepared;
 mod ray;
+mod stack;
 mod traverse;
 mod triangle_bvh;
 mod watertight;

@@ -14,6 +14,8 @@ pub(crate) struct Node {
     pub(crate) bounds: [[f32; WIDTH]; 6],
     /// [`Child`]s.
     pub(crate) children: [u32; WIDTH],
+    /// A bit per slot with a leaf.
+    pub(crate) leaves: u8,
 }
 
 impl Node {
@@ -27,6 +29,7 @@ impl Node {
             [f32::NEG_INFINITY; WIDTH],
         ],
         children: [0; WIDTH],
+        leaves: 0,
     };
 
     pub(crate) fn set(&mut self, slot: usize, bounds: &Aabb32, child: Child) {
@@ -35,6 +38,7 @@ impl Node {
             self.bounds[2 * axis + 1][slot] = bounds.max[axis];
         }
         self.children[slot] = child.0;
+        self.leaves |= u8::from(child.is_leaf()) << slot;
     }
 }
 

@@ -3,8 +3,9 @@
 use fearless_simd::{Simd, f32x8, prelude::*};
 
 use crate::node::{Child, Node, WIDTH};
-use crate::order::{ORDERS, octant};
+use crate::order::{ORDERS, Order, octant};
 use crate::prepared::PreparedRay;
+use crate::stack::{Places, Stack};
 
 /// Levels of nodes a hierarchy may have; see the build.
 pub(crate) const MAX_DEPTH: usize = 64;
@@ -20,6 +21,10 @@ pub(crate) const fn stack_size(depth: usize) -> usize {
 
 /// What is done at the leaves.
 pub(crate) trait Visitor {
+    /// Whether the walk is likely to end at the first leaf with a hit, so that the order of leaves does not
+    /// matter.
+    const ANY: bool;
+
     /// Tests the items of a leaf; may lower `t_max`. True ends the walk.
     fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<S>, leaf: Child, t_max: &mut f32) -> bool;
 
@@ -112,9 +117,8 @@ pub(crate) fn walk<S: Simd, V: Visitor, const STACK: usize>(
     let lanes = LaneRay::new(simd, ray);
     let orders = &ORDERS[octant(ray)];
     let mut t_max = ray.t_max;
-    let mut entries = [0f32; STACK];
-    let mut children = [0u32; STACK];
-    let mut top = 0;
+    let mut places = Places::<STACK>::new();
+    let mut stack = Stack::new(&mut places);
     let mut current = Child::node(0);
     loop {
         if current.is_leaf() {
@@ -126,25 +130,26 @@ pub(crate) fn walk<S: Simd, V: Visitor, const STACK: usize>(
             let node = &nodes[current.node_index()];
             let (enter, mask) = meet(simd, &lanes, node, t_max);
             if mask != 0 {
-                // All are put on the stack, the nearest last; it is taken without looking there.
-                let order = orders[mask as usize % 256];
-                let (enter, child) = order.arrange(simd, enter, &node.children);
-                entries[top..top + WIDTH].copy_from_slice(&enter);
-                children[top..top + WIDTH].copy_from_slice(&child);
-                top += mask.count_ones() as usize - 1;
-                current = Child(node.children[order.nearest()]);
+                let next =
+                    if V::ANY { any_slot(node, mask, orders) } else { orders[mask as usize % 256].nearest() };
+                // The others wait, the nearest of them last.
+                let others = mask & !(1 << next);
+                let (entries, children) = orders[others as usize % 256].arrange(simd, enter, &node.children);
+                stack.push(entries, children, others.count_ones() as usize);
+                current = Child(node.children[next]);
                 continue;
             }
         }
-        loop {
-            if top == 0 {
-                return;
-            }
-            top -= 1;
-            if entries[top] <= t_max {
-                current = Child(children[top]);
-                break;
-            }
+        match stack.pop(t_max) {
+            Some(child) => current = Child(child),
+            None => return,
         }
     }
+}
+
+/// The slot to look into first when any hit will do: a leaf, which may end the walk, before a node.
+#[inline(always)]
+fn any_slot(node: &Node, mask: u32, orders: &[Order; 256]) -> usize {
+    let leaves = mask & u32::from(node.leaves);
+    orders[if leaves != 0 { leaves } else { mask } as usize % 256].nearest()
 }

@@ -1,6 +1,6 @@
 //! The hierarchy over triangles.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use rayon::prelude::*;
 use senca_math::glam::Vec3;
 
@@ -9,6 +9,7 @@ use crate::build::{Item, build};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
 use crate::traverse::{LaneRay, MAX_DEPTH, SHALLOW, Visitor, stack_size, walk};
+use crate::watertight::intersect;
 use crate::{Aabb32, BuildError, Ray32, TraversalCounts, TriangleHit};
 
 /// How a hierarchy is built. None of it changes an answer.
@@ -207,17 +208,17 @@ impl TriangleBvh {
         accept: A,
         count: C,
     ) -> Option<TriangleHit> {
-        let mut visitor = Closest { blocks: &self.blocks, best: None, t_best: f32::INFINITY, accept, count };
-        self.walk(ray, &mut visitor);
-        visitor.best
+        let mut search = Search { blocks: &self.blocks, found: Closest { best: None, accept }, count };
+        self.walk(ray, &mut search);
+        search.found.best
     }
 
     /// Whether a ray whose t is nowhere negative meets anything.
     #[inline]
     fn any_ahead<A: FnMut(&TriangleHit) -> bool, C: Count>(&self, ray: &Ray32, accept: A, count: C) -> bool {
-        let mut visitor = Any { blocks: &self.blocks, found: false, accept, count };
-        self.walk(ray, &mut visitor);
-        visitor.found
+        let mut search = Search { blocks: &self.blocks, found: Any { found: false, accept }, count };
+        self.walk(ray, &mut search);
+        search.found.found
     }
 
     #[inline]
@@ -260,76 +261,114 @@ impl<C: Count> Count for &mut C {
     }
 }
 
-/// Keeps the closest hit.
-struct Closest<'a, A, C> {
+/// Looks for hits in leaves.
+struct Search<'a, F, C> {
     blocks: &'a [Block],
-    best: Option<TriangleHit>,
-    /// t of `best` in units of the prepared ray.
-    t_best: f32,
-    accept: A,
+    found: F,
     count: C,
 }
 
-impl<A: FnMut(&TriangleHit) -> bool, C: Count> Visitor for Closest<'_, A, C> {
-    #[inline(always)]
-    fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<'_, S>, leaf: Child, t_max: &mut f32) -> bool {
-        self.count.add(0, leaf.leaf_count());
-        let block = &self.blocks[leaf.leaf_index()];
-        let Some(hits) = block.meet(simd, ray, leaf.leaf_count(), *t_max) else { return false };
-        let mut mask = hits.mask;
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize % LANES;
-            mask &= mask - 1;
-            let (t, triangle) = (hits.t[lane], block.triangles[lane]);
-            if t < *t_max || self.best.is_some_and(|best| t == self.t_best && triangle < best.triangle) {
-                let hit =
-                    TriangleHit { t: t * ray.prepared.t_unit, u: hits.u[lane], v: hits.v[lane], triangle };
-                if hit.t < f32::INFINITY && (self.accept)(&hit) {
-                    self.best = Some(hit);
-                    (self.t_best, *t_max) = (t, t);
-                }
-            }
-        }
-        false
-    }
+/// What is done with hits.
+trait Found {
+    /// Whether any hit ends the search.
+    const ANY: bool;
+
+    /// Sees a hit with t at most `t_max`, which it may lower. True ends the search.
+    fn hit(&mut self, t: f32, hit: TriangleHit, t_max: &mut f32) -> bool;
+}
+
+/// Keeps the closest hit.
+struct Closest<A> {
+    best: Option<TriangleHit>,
+    accept: A,
+}
+
+impl<A: FnMut(&TriangleHit) -> bool> Found for Closest<A> {
+    const ANY: bool = false;
 
     #[inline(always)]
-    fn node(&mut self) {
-        self.count.add(1, 0);
+    fn hit(&mut self, t: f32, hit: TriangleHit, t_max: &mut f32) -> bool {
+        // Once there is a hit, `t_max` is its t.
+        let better = t < *t_max || self.best.is_some_and(|best| hit.triangle < best.triangle);
+        if better && hit.t < f32::INFINITY && (self.accept)(&hit) {
+            self.best = Some(hit);
+            *t_max = t;
+        }
+        false
     }
 }
 
 /// Ends at the first hit.
-struct Any<'a, A, C> {
-    blocks: &'a [Block],
+struct Any<A> {
     found: bool,
     accept: A,
-    count: C,
 }
 
-impl<A: FnMut(&TriangleHit) -> bool, C: Count> Visitor for Any<'_, A, C> {
+impl<A: FnMut(&TriangleHit) -> bool> Found for Any<A> {
+    const ANY: bool = true;
+
+    #[inline(always)]
+    fn hit(&mut self, t: f32, hit: TriangleHit, t_max: &mut f32) -> bool {
+        self.found = t < *t_max && hit.t < f32::INFINITY && (self.accept)(&hit);
+        self.found
+    }
+}
+
+impl<F: Found, C: Count> Visitor for Search<'_, F, C> {
+    const ANY: bool = F::ANY;
+
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<'_, S>, leaf: Child, t_max: &mut f32) -> bool {
         self.count.add(0, leaf.leaf_count());
         let block = &self.blocks[leaf.leaf_index()];
-        let Some(hits) = block.meet(simd, ray, leaf.leaf_count(), *t_max) else { return false };
-        let mut mask = hits.mask;
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize % LANES;
-            mask &= mask - 1;
-            let (t, triangle) = (hits.t[lane], block.triangles[lane]);
-            let hit = TriangleHit { t: t * ray.prepared.t_unit, u: hits.u[lane], v: hits.v[lane], triangle };
-            if t < *t_max && hit.t < f32::INFINITY && (self.accept)(&hit) {
-                self.found = true;
-                return true;
+        let hits = block.meet(simd, ray, leaf.leaf_count(), *t_max);
+        let unit = ray.prepared.t_unit;
+        if hits.mask != 0 {
+            let (t, u, v) = (hits.t.to_array(), hits.u.to_array(), hits.v.to_array());
+            let mut mask = hits.mask;
+            while mask != 0 {
+                let lane = mask.trailing_zeros() as usize % LANES;
+                mask &= mask - 1;
+                let hit = TriangleHit {
+                    t: t[lane] * unit,
+                    u: u[lane],
+                    v: v[lane],
+                    triangle: block.triangles[lane],
+                };
+                if t[lane] <= *t_max && self.found.hit(t[lane], hit, t_max) {
+                    return true;
+                }
             }
         }
-        false
+        hits.unsure != 0 && self.unsure(ray.prepared, block, hits.unsure, t_max)
     }
 
     #[inline(always)]
     fn node(&mut self) {
         self.count.add(1, 0);
+    }
+}
+
+impl<F: Found, C> Search<'_, F, C> {
+    /// Tests some triangles of a block one by one.
+    #[cold]
+    #[inline(never)]
+    fn unsure(&mut self, ray: &PreparedRay, block: &Block, mut mask: u32, t_max: &mut f32) -> bool {
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize % LANES;
+            mask &= mask - 1;
+            if let Some((t, u, v)) = intersect(ray, block.corners(lane))
+                && t <= *t_max
+                && self.found.hit(
+                    t,
+                    TriangleHit { t: t * ray.t_unit, u, v, triangle: block.triangles[lane] },
+                    t_max,
+                )
+            {
+                return true;
+            }
+        }
+        false
     }
 }
 
