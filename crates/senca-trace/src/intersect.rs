@@ -6,6 +6,7 @@
 
 mod analytic;
 mod build;
+mod csg;
 mod cuboid;
 mod flat;
 mod frustum;
@@ -26,6 +27,7 @@ use smallvec::SmallVec;
 use crate::{Counters, Ray};
 
 pub use build::{Elsewhere, surface_of};
+pub use csg::{CsgBody, CsgBuilder, CsgError, Operation};
 pub use cuboid::Cuboid;
 pub use flat::{Disc, PlaneSurface, Polygon};
 pub use frustum::Frustum;

@@ -20,8 +20,9 @@ pub use accel::{Accel, AccelSettings};
 pub use counters::{Counters, RayCounts, TraceCounts};
 pub use error::TraceError;
 pub use intersect::{
-    Crossing, Crossings, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum, Implicit, Intersect, PlaneSurface,
-    Polygon, Prism, Revolution, RootMethod, Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
+    Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum,
+    Implicit, Intersect, Operation, PlaneSurface, Polygon, Prism, Revolution, RootMethod, Sphere,
+    SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
 };
 #[cfg(test)]
 mod test_support;

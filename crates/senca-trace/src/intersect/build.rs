@@ -7,7 +7,7 @@ use super::{Cuboid, Disc, Ellipsoid, Frustum, PlaneSurface, Polygon, Prism, Revo
 use crate::Intersect;
 
 /// What builds the surfaces of shapes that have accelerators of their own.
-pub type Elsewhere<'a> = dyn FnMut(&Shape) -> Result<Box<dyn Intersect>, ShapeError> + 'a;
+pub type Elsewhere<'a, 's> = dyn FnMut(&'s Shape) -> Result<Box<dyn Intersect + 's>, ShapeError> + 'a;
 
 /// The surface of any shape but meshes and patches, which have their own accelerators: for those
 /// `elsewhere` is asked.
@@ -15,7 +15,10 @@ pub type Elsewhere<'a> = dyn FnMut(&Shape) -> Result<Box<dyn Intersect>, ShapeEr
 /// # Errors
 /// [`ShapeError`] when a parameter is out of range, in the same words as by tessellation, and whatever
 /// `elsewhere` refuses.
-pub fn surface_of(shape: &Shape, elsewhere: &mut Elsewhere<'_>) -> Result<Box<dyn Intersect>, ShapeError> {
+pub fn surface_of<'s>(
+    shape: &'s Shape,
+    elsewhere: &mut Elsewhere<'_, 's>,
+) -> Result<Box<dyn Intersect + 's>, ShapeError> {
     Ok(match shape {
         Shape::Mesh(_) | Shape::BezierPatches { .. } | Shape::Nurbs(_) => elsewhere(shape)?,
         Shape::Sphere { radius } => Box::new(Sphere::new(positive("sphere", "radius", *radius)?)),

@@ -103,7 +103,7 @@ fn shapes() -> Vec<Shape> {
     all
 }
 
-fn surface(shape: &Shape) -> Box<dyn Intersect> {
+fn surface(shape: &Shape) -> Box<dyn Intersect + '_> {
     surface_of(shape, &mut |other| panic!("no surface for {other:?}")).unwrap()
 }
 
