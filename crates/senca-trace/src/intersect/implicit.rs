@@ -137,7 +137,7 @@ impl Implicit {
             (gradient, if step.is_finite() { step } else { DVec3::ZERO })
         };
         let (_, first) = step(near);
-        let small = first.length() < 1e-6 * self.bounds.diagonal();
+        let small = first.length() < 1e-8 * self.bounds.diagonal();
         let point = if small { near - first } else { near };
         let against = || -ray.direction.normalize_or(DVec3::Y);
         let normal = step(point).0.try_normalize().or_else(|| self.gradient_around(point));
