@@ -31,7 +31,6 @@ mod two_level;
 mod volumes;
 
 pub use binary::BinaryBvh;
-pub(crate) use binary::BoxTree;
 pub use hierarchy::Hierarchy;
 pub use list::List;
 pub use settings::{Accel, AccelSettings};
@@ -87,6 +86,6 @@ pub fn build(
         Accel::Bounds => Box::new(Volumes::<Aabb>::new(objects)),
         Accel::Hierarchy => Box::new(Hierarchy::new(scene, objects)),
         Accel::Sah => Box::new(BinaryBvh::new(objects, settings.leaf_size)),
-        Accel::Bvh => Box::new(TwoLevel::new(objects)),
+        Accel::Bvh => Box::new(TwoLevel::new(objects)?),
     })
 }

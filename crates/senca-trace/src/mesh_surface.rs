@@ -3,46 +3,37 @@
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
+use senca_bvh::{BruteForce, BuildError, BuildSettings, Ray32, TraversalCounts, TriangleBvh, TriangleHit};
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 use senca_scene::{Mesh, Topology};
 
-use crate::accel::BoxTree;
 use crate::{Counters, Crossing, Crossings, Intersect, Ray, SurfacePoint};
 
 /// Share of the largest coordinate by which single precision, in which points are stored, may move
 /// things.
 const PRECISION: f64 = 1.0 / (1 << 21) as f64;
-/// Triangles that a leaf of the hierarchy may hold.
-const LEAF_SIZE: u32 = 4;
+/// Directions with a largest component in this range keep their digits in single precision.
+const PLAIN: std::ops::Range<f64> = 1e-30..1e30;
 
 /// A mesh of triangles.
+///
+/// Rays meet its triangles in single precision, in which its points are stored, without gaps between
+/// neighbours; the place on the triangle is then found in double precision.
 #[derive(Debug)]
 pub(crate) struct MeshSurface<'s> {
     mesh: Cow<'s, Mesh>,
     bounds: Aabb,
-    tree: Option<BoxTree>,
+    hierarchy: Option<TriangleBvh>,
     closed: OnceLock<bool>,
 }
 
 impl<'s> MeshSurface<'s> {
     /// The triangles of `mesh`, which holds together and has no other faces. Without a hierarchy it is
     /// asked part by part.
-    pub(crate) fn of_mesh(mesh: Cow<'s, Mesh>, hierarchy: bool) -> Self {
-        let bounds = mesh.bounds();
-        let mut surface = Self { mesh, bounds, tree: None, closed: OnceLock::new() };
-        if hierarchy {
-            let boxes: Vec<Aabb> = (0..surface.part_count()).map(|i| surface.widened(i)).collect();
-            surface.tree = Some(BoxTree::new(&boxes, LEAF_SIZE));
-        }
-        surface
-    }
-
-    /// Box around a triangle, wider than rounding.
-    fn widened(&self, triangle: u32) -> Aabb {
-        let bounds = Aabb::of_points(self.points(triangle));
-        let margin = DVec3::splat(1e-12 * self.bounds.min.abs().max(self.bounds.max.abs()).max_element());
-        Aabb { min: bounds.min - margin, max: bounds.max + margin }
+    pub(crate) fn of_mesh(mesh: Cow<'s, Mesh>, hierarchy: bool) -> Result<Self, BuildError> {
+        let hierarchy = hierarchy.then(|| hierarchy_of(&mesh)).transpose()?;
+        Ok(Self { bounds: mesh.bounds(), mesh, hierarchy, closed: OnceLock::new() })
     }
 
     /// Vertex numbers of a triangle's corners.
@@ -52,26 +43,82 @@ impl<'s> MeshSurface<'s> {
         [corners[first], corners[first + 1], corners[first + 2]]
     }
 
-    fn points(&self, triangle: u32) -> [DVec3; 3] {
-        self.corners(triangle).map(|c| self.mesh.position(c).as_dvec3())
+    fn points(&self, triangle: u32) -> [Vec3; 3] {
+        self.corners(triangle).map(|c| self.mesh.position(c))
     }
 }
 
-/// Möller and Trumbore 1997: t and the weights of the second and third corner.
-fn meet(ray: &Ray, [a, b, c]: [DVec3; 3]) -> Option<(f64, DVec2)> {
+fn hierarchy_of(mesh: &Mesh) -> Result<TriangleBvh, BuildError> {
+    let triangles: Vec<[u32; 3]> = mesh
+        .faces
+        .corners
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .map(|corners| corners.map(|corner| mesh.vertices.point[corner as usize]))
+        .collect();
+    TriangleBvh::build(&mesh.points, &triangles, &BuildSettings::default())
+}
+
+/// A ray in single precision, and what its parameters are to be multiplied with.
+#[derive(Clone, Copy, Debug)]
+struct Single {
+    ray: Ray32,
+    unit: f64,
+}
+
+impl Single {
+    #[inline]
+    fn new(ray: &Ray) -> Self {
+        if PLAIN.contains(&ray.direction.abs().max_element()) {
+            return Self::of(ray, 1.0);
+        }
+        Self::scaled(ray)
+    }
+
+    #[cold]
+    fn scaled(ray: &Ray) -> Self {
+        let unit = 1.0 / ray.direction.abs().max_element();
+        let direction = ray.direction * unit;
+        Self::of(&Ray { direction, t_min: ray.t_min / unit, t_max: ray.t_max / unit, ..*ray }, unit)
+    }
+
+    /// Limits are rounded up: nothing at or before `t_min` is met, and what is met too late is told from
+    /// the rest afterwards.
+    #[inline]
+    fn of(ray: &Ray, unit: f64) -> Self {
+        let ray = Ray32 {
+            origin: ray.origin.as_vec3(),
+            t_min: rounded_up(ray.t_min),
+            direction: ray.direction.as_vec3(),
+            t_max: rounded_up(ray.t_max),
+        };
+        Self { ray, unit }
+    }
+
+    #[inline]
+    fn crossing(&self, hit: &TriangleHit) -> Crossing {
+        let uv = DVec2::new(f64::from(hit.u), f64::from(hit.v));
+        Crossing { t: f64::from(hit.t) * self.unit, part: hit.triangle, uv }
+    }
+}
+
+/// The smallest number of single precision that is not below `x`.
+#[inline]
+pub(crate) fn rounded_up(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) < x { nearest.next_up() } else { nearest }
+}
+
+/// Weights of the second and third corner where the line of the ray meets the plane of the triangle
+/// (Möller and Trumbore 1997), moved into the triangle where rounding has left them outside.
+fn weights(ray: &Ray, [a, b, c]: [DVec3; 3]) -> Option<DVec2> {
     let (e1, e2) = (b - a, c - a);
     let p = ray.direction.cross(e2);
-    let determinant = e1.dot(p);
-    if determinant == 0.0 {
-        return None;
-    }
-    let inverse = 1.0 / determinant;
     let s = ray.origin - a;
-    let u = s.dot(p) * inverse;
-    let q = s.cross(e1);
-    let v = ray.direction.dot(q) * inverse;
-    let t = e2.dot(q) * inverse;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && ray.admits(t)).then_some((t, DVec2::new(u, v)))
+    let weights = DVec2::new(s.dot(p), ray.direction.dot(s.cross(e1))) / e1.dot(p);
+    let weights = weights.is_finite().then(|| weights.max(DVec2::ZERO))?;
+    Some(weights / (weights.x + weights.y).max(1.0))
 }
 
 impl Intersect for MeshSurface<'_> {
@@ -79,64 +126,52 @@ impl Intersect for MeshSurface<'_> {
         self.bounds
     }
 
+    #[inline]
     fn closest(&self, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
-        let line = ray;
-        let mut ray = *ray;
-        let mut nearest = None;
-        let mut ask = |triangle: u32, counters: &mut Counters| {
-            if let Some(crossing) = self.closest_in_part(triangle, &ray, counters) {
-                let before = |n: &Crossing| (crossing.t, crossing.part) < (n.t, n.part);
-                if nearest.as_ref().is_none_or(before) {
-                    ray.t_max = crossing.t.next_up();
-                    nearest = Some(crossing);
-                }
-            }
-            ray.t_max
-        };
-        match &self.tree {
-            Some(tree) => tree.traverse(line, counters, |triangles, counters| {
-                triangles.iter().map(|&triangle| ask(triangle, counters)).last()
-            }),
-            None => (0..self.part_count()).for_each(|triangle| {
-                ask(triangle, counters);
-            }),
-        }
-        nearest
+        let Some(hierarchy) = &self.hierarchy else { return self.closest_of_all(ray, counters) };
+        let single = Single::new(ray);
+        let mut counts = TraversalCounts::default();
+        let hit = hierarchy.closest_counted(&single.ray, &mut counts);
+        add(counters, counts);
+        hit.map(|hit| single.crossing(&hit)).filter(|crossing| ray.admits(crossing.t))
     }
 
+    #[inline]
     fn occludes(&self, ray: &Ray, counters: &mut Counters) -> bool {
-        let meets =
-            |triangle: u32, counters: &mut Counters| self.closest_in_part(triangle, ray, counters).is_some();
-        let Some(tree) = &self.tree else {
-            return (0..self.part_count()).any(|triangle| meets(triangle, counters));
-        };
-        let mut met = false;
-        tree.traverse(ray, counters, |triangles, counters| {
-            met = triangles.iter().any(|&triangle| meets(triangle, counters));
-            (!met).then_some(ray.t_max)
-        });
+        let Some(hierarchy) = &self.hierarchy else { return self.closest_of_all(ray, counters).is_some() };
+        let single = Single::new(ray);
+        if f64::from(single.ray.t_max) * single.unit != ray.t_max {
+            return hierarchy.occluded_where(&single.ray, |hit| ray.admits(single.crossing(hit).t));
+        }
+        let mut counts = TraversalCounts::default();
+        let met = hierarchy.occluded_counted(&single.ray, &mut counts);
+        add(counters, counts);
         met
     }
 
     fn crossings(&self, ray: &Ray, counters: &mut Counters, out: &mut Crossings) {
         let first = out.len();
-        let mut add = |triangle, counters: &mut Counters| {
-            out.extend(self.closest_in_part(triangle, ray, counters));
-        };
-        match &self.tree {
-            Some(tree) => tree.traverse(ray, counters, |triangles, counters| {
-                triangles.iter().for_each(|&triangle| add(triangle, counters));
-                Some(ray.t_max)
-            }),
-            None => (0..self.part_count()).for_each(|triangle| add(triangle, counters)),
+        match &self.hierarchy {
+            Some(hierarchy) => {
+                let single = Single::new(ray);
+                hierarchy.all_hits(&single.ray, |hit| out.push(single.crossing(hit)));
+                counters.tests += (out.len() - first) as u64;
+            }
+            None => {
+                let all = 0..self.part_count();
+                out.extend(all.filter_map(|triangle| self.closest_in_part(triangle, ray, counters)));
+            }
         }
         out[first..].sort_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));
+        let too_late = out[first..].partition_point(|crossing| ray.admits(crossing.t));
+        out.truncate(first + too_late);
     }
 
     fn surface_point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         let corners = self.corners(crossing.part);
-        let [a, b, c] = self.points(crossing.part);
-        let weights = [1.0 - crossing.uv.x - crossing.uv.y, crossing.uv.x, crossing.uv.y].map(|w| w as f32);
+        let [a, b, c] = self.points(crossing.part).map(Vec3::as_dvec3);
+        let uv = weights(ray, [a, b, c]).unwrap_or(crossing.uv);
+        let weights = [1.0 - uv.x - uv.y, uv.x, uv.y].map(|w| w as f32);
         let vertices = &self.mesh.vertices;
         let normal = (b - a).cross(c - a).normalize_or(-ray.direction.normalize_or_zero());
         let smooth = blend(&vertices.normal, corners, weights).map(Vec3::as_dvec3);
@@ -144,7 +179,7 @@ impl Intersect for MeshSurface<'_> {
         let texcoord = |set: &[Vec2]| blend(set, corners, weights).unwrap_or_default().as_dvec2();
         let tangent = blend(&vertices.tangent, corners, weights).unwrap_or(Vec4::ZERO);
         SurfacePoint {
-            point: f64::from(weights[0]) * a + f64::from(weights[1]) * b + f64::from(weights[2]) * c,
+            point: a + uv.x * (b - a) + uv.y * (c - a),
             normal,
             shading_normal,
             texcoords: [texcoord(&vertices.texcoord0), texcoord(&vertices.texcoord1)],
@@ -164,13 +199,15 @@ impl Intersect for MeshSurface<'_> {
     }
 
     fn part_bounds(&self, part: u32) -> Aabb {
-        Aabb::of_points(self.points(part))
+        Aabb::of_points(self.points(part).map(Vec3::as_dvec3))
     }
 
     fn closest_in_part(&self, part: u32, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
         counters.tests += 1;
-        let (t, uv) = meet(ray, self.points(part))?;
-        Some(Crossing { t, part, uv })
+        let single = Single::new(ray);
+        let one = BruteForce { points: &self.points(part), triangles: &[[0, 1, 2]] };
+        let hit = TriangleHit { triangle: part, ..one.closest(&single.ray)? };
+        Some(single.crossing(&hit)).filter(|crossing| ray.admits(crossing.t))
     }
 
     fn precision(&self) -> f64 {
@@ -178,8 +215,29 @@ impl Intersect for MeshSurface<'_> {
     }
 
     fn memory_bytes(&self) -> usize {
-        self.tree.as_ref().map_or(0, BoxTree::memory_bytes)
+        self.hierarchy.as_ref().map_or(0, TriangleBvh::memory_bytes)
     }
+}
+
+impl MeshSurface<'_> {
+    /// The nearest crossing, by asking every triangle.
+    fn closest_of_all(&self, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
+        let mut ray = *ray;
+        let mut nearest = None;
+        for triangle in 0..self.part_count() {
+            if let Some(crossing) = self.closest_in_part(triangle, &ray, counters) {
+                ray.t_max = crossing.t;
+                nearest = Some(crossing);
+            }
+        }
+        nearest
+    }
+}
+
+#[inline]
+fn add(counters: &mut Counters, counts: TraversalCounts) {
+    counters.nodes += counts.nodes;
+    counters.tests += counts.triangles;
 }
 
 /// Weighted mean of the corners' values of an attribute, where there is one.

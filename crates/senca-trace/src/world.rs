@@ -12,8 +12,8 @@ use senca_scene::{Scene, TessellationSettings, Warning};
 use crate::accel::{self, AccelSettings, Accelerator};
 use crate::{Counters, Crossing, Ray, TraceError};
 
-pub(crate) use object::LocalRay;
 pub use object::Object;
+pub(crate) use object::{LocalRay, way_to_ball};
 
 /// A ray meets an object.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -36,7 +36,7 @@ struct Node {
 
 /// The tree over numbered boxes, whatever they hold.
 #[derive(Debug, Default)]
-pub(crate) struct BoxTree {
+struct BoxTree {
     nodes: Vec<Node>,
     /// Numbers of the boxes, leaf after leaf.
     items: Vec<u32>,
@@ -44,7 +44,7 @@ pub(crate) struct BoxTree {
 
 impl BoxTree {
     /// A tree over `boxes`, none of them empty or endless, with leaves of up to `leaf_size`.
-    pub(crate) fn new(boxes: &[Aabb], leaf_size: u32) -> Self {
+    fn new(boxes: &[Aabb], leaf_size: u32) -> Self {
         let mut tree = Self { nodes: Vec::new(), items: (0..boxes.len() as u32).collect() };
         if !boxes.is_empty() {
             let count = boxes.len();
@@ -59,7 +59,7 @@ impl BoxTree {
     /// Visits leaves that the ray meets, near ones first, and calls `visit` with the items of each;
     /// it returns the t beyond which nothing is of use, or `None` to stop.
     #[inline]
-    pub(crate) fn traverse(
+    fn traverse(
         &self,
         ray: &Ray,
         counters: &mut Counters,
@@ -103,7 +103,7 @@ impl BoxTree {
         }
     }
 
-    pub(crate) fn memory_bytes(&self) -> usize {
+    fn memory_bytes(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.items)
     }
 }

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+use senca_bvh::BuildError;
 use senca_math::glam::{DMat3, DMat4};
 use senca_scene::{
-    AlphaMode, Geometry, GeometryId, Instance, Material, MaterialId, Mesh, Scene, Shape, Surface,
+    AlphaMode, Geometry, GeometryId, Instance, Material, MaterialId, Mesh, Scene, Shape, ShapeError, Surface,
     TessellationSettings, Warning, tessellate,
 };
 
@@ -72,8 +73,9 @@ impl<'s> Builder<'s, '_> {
             self.leave_out(instance, "it is too large for single precision");
             return Ok(());
         };
-        let surface = Arc::new(MeshSurface::of_mesh(Cow::Owned(mesh), self.has_hierarchies()));
-        self.add(instance, surface, DMat4::IDENTITY);
+        let surface = self.mesh_surface(Cow::Owned(mesh));
+        let surface = surface.map_err(|source| shape_error(geometry, instance.geometry, source))?;
+        self.add(instance, Arc::new(surface), DMat4::IDENTITY);
         Ok(())
     }
 
@@ -93,11 +95,28 @@ impl<'s> Builder<'s, '_> {
             return Ok(Arc::clone(surface));
         }
         let geometry = &self.scene.geometries[id.index()];
-        let mesh = tessellate(&geometry.shape, &self.settings.tessellation)
-            .map_err(|source| shape_error(geometry, id, source))?;
-        let surface: Arc<dyn Intersect + 's> = Arc::new(MeshSurface::of_mesh(mesh, self.has_hierarchies()));
+        let surface = self.surface_of(&geometry.shape).map_err(|source| shape_error(geometry, id, source))?;
         self.ready.insert(id, Arc::clone(&surface));
         Ok(surface)
+    }
+
+    /// The surface of a shape, exact where that is possible.
+    fn surface_of(&self, shape: &'s Shape) -> Result<Arc<dyn Intersect + 's>, ShapeError> {
+        let as_mesh = |shape| tessellate(shape, &self.settings.tessellation);
+        if let Shape::Mesh(_) = shape {
+            return Ok(Arc::new(self.mesh_surface(as_mesh(shape)?)?));
+        }
+        let mut tessellated = |shape: &Shape| -> Result<Box<dyn Intersect>, ShapeError> {
+            let mesh = tessellate(shape, &self.settings.tessellation)?.into_owned();
+            Ok(Box::new(self.mesh_surface(Cow::Owned(mesh))?))
+        };
+        Ok(crate::intersect::surface_of(shape, &mut tessellated)?.into())
+    }
+
+    fn mesh_surface<'m>(&self, mesh: Cow<'m, Mesh>) -> Result<MeshSurface<'m>, ShapeError> {
+        let malformed =
+            |error: BuildError| ShapeError::Malformed { shape: "mesh", reason: error.to_string() };
+        MeshSurface::of_mesh(mesh, self.has_hierarchies()).map_err(malformed)
     }
 
     fn add(&mut self, instance: &Instance, surface: Arc<dyn Intersect + 's>, world_from_object: DMat4) {
@@ -128,7 +147,7 @@ impl<'s> Builder<'s, '_> {
     }
 }
 
-fn shape_error(geometry: &Geometry, id: GeometryId, source: senca_scene::ShapeError) -> TraceError {
+fn shape_error(geometry: &Geometry, id: GeometryId, source: ShapeError) -> TraceError {
     TraceError::Shape { geometry: id.0, name: geometry.name.clone(), source }
 }
 

@@ -38,6 +38,7 @@ pub struct Object<'s> {
     placement: Placement,
     /// Centre of the bounds, and square of the distance from it at which rays are moved up.
     center_world: DVec3,
+    radius_world: f64,
     far_squared: f64,
     /// Largest absolute coordinate in object space; infinite where the surface is endless.
     extent: f64,
@@ -66,11 +67,12 @@ pub(crate) struct LocalRay {
 
 impl LocalRay {
     /// The same line between the limits of a ray in the world. Rounding of the shift leaves the upper
-    /// limit too high rather than too low.
+    /// limit too high rather than too low; where there is a shift, nothing is met before it.
     #[inline]
     pub(crate) fn with_limits(&self, ray: &Ray) -> Self {
         let slack = 4.0 * f64::EPSILON * self.shift.abs();
-        let (t_min, t_max) = (ray.t_min - self.shift, ray.t_max - self.shift + slack);
+        let t_min = if self.shift == 0.0 { ray.t_min } else { (ray.t_min - self.shift).max(0.0) };
+        let t_max = ray.t_max - self.shift + slack;
         Self { ray: Ray { t_min, t_max, ..self.ray }, shift: self.shift }
     }
 
@@ -107,6 +109,7 @@ impl<'s> Object<'s> {
             geometry,
             placement: placement(&world_from_object),
             center_world: DVec3::ZERO,
+            radius_world: f64::INFINITY,
             far_squared: f64::INFINITY,
             extent,
             scale,
@@ -114,7 +117,8 @@ impl<'s> Object<'s> {
         object.bounds_world = object.in_world(bounds);
         if !object.is_endless() {
             object.center_world = object.bounds_world.center();
-            object.far_squared = (0.5 * FAR * object.bounds_world.diagonal()).powi(2);
+            object.radius_world = 0.5 * object.bounds_world.diagonal();
+            object.far_squared = (FAR * object.radius_world).powi(2);
         }
         object
     }
@@ -165,11 +169,10 @@ impl<'s> Object<'s> {
         LocalRay { ray: self.to_object(ray), shift: 0.0 }
     }
 
-    /// The ray in object space, from its point nearest to the centre of the object.
+    /// The ray in object space, from where it comes near the object.
     #[cold]
     fn moved_up(&self, ray: &Ray, to_center: DVec3) -> LocalRay {
-        let shift = to_center.dot(ray.direction) / ray.direction.length_squared();
-        let shift = if shift.is_finite() { shift } else { 0.0 };
+        let shift = way_to_ball(-to_center, ray.direction, self.radius_world);
         let moved = Ray { origin: ray.at(shift), ..*ray };
         LocalRay { ray: self.to_object(&moved), shift }.with_limits(ray)
     }
@@ -215,6 +218,14 @@ impl<'s> Object<'s> {
         let largest = if self.is_endless() { point_object.abs().max_element() } else { self.extent };
         self.scale * self.surface.precision() * largest
     }
+}
+
+/// The t of a place on the line before all of the ball of `radius` around the origin, not far from it;
+/// 0 where that is no number.
+pub(crate) fn way_to_ball(origin: DVec3, direction: DVec3, radius: f64) -> f64 {
+    let squared = direction.length_squared();
+    let t = -origin.dot(direction) / squared - 2.0 * radius / squared.sqrt();
+    if t.is_finite() { t } else { 0.0 }
 }
 
 /// Largest absolute coordinate; infinite for boxes without end, 0 for empty ones.
