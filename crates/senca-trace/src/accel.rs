@@ -20,8 +20,10 @@
 
 mod binary;
 mod elements;
+mod grid;
 mod hierarchy;
 mod list;
+mod octree;
 mod search;
 mod settings;
 mod slabs;
@@ -31,8 +33,10 @@ mod two_level;
 mod volumes;
 
 pub use binary::BinaryBvh;
+pub use grid::Grid;
 pub use hierarchy::Hierarchy;
 pub use list::List;
+pub use octree::Octree;
 pub use settings::{Accel, AccelSettings};
 pub use slabs::{Slabs, meets_sphere};
 pub use two_level::TwoLevel;
@@ -85,6 +89,8 @@ pub fn build(
         Accel::Spheres => Box::new(Volumes::<BoundingSphere>::new(objects)),
         Accel::Bounds => Box::new(Volumes::<Aabb>::new(objects)),
         Accel::Hierarchy => Box::new(Hierarchy::new(scene, objects)),
+        Accel::Grid => Box::new(Grid::new(objects, settings.grid_cells)),
+        Accel::Octree => Box::new(Octree::new(objects, settings.octree_depth, settings.leaf_size)),
         Accel::Sah => Box::new(BinaryBvh::new(objects, settings.leaf_size)),
         Accel::Bvh => Box::new(TwoLevel::new(objects)?),
     })

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::grid::MOST_CELLS;
+use super::octree::DEEPEST;
 use crate::TraceError;
 
 /// The accelerators by name.
@@ -16,6 +18,10 @@ pub enum Accel {
     Bounds,
     /// The scene's own tree as a hierarchy of boxes.
     Hierarchy,
+    /// A uniform grid over all elements.
+    Grid,
+    /// An octree over all elements.
+    Octree,
     /// A binary hierarchy of boxes over all elements.
     Sah,
     /// Wide hierarchies, one over the objects and one inside every mesh.
@@ -25,8 +31,16 @@ pub enum Accel {
 
 impl Accel {
     /// All of them, from the simplest to the default.
-    pub const ALL: [Self; 6] =
-        [Self::None, Self::Spheres, Self::Bounds, Self::Hierarchy, Self::Sah, Self::Bvh];
+    pub const ALL: [Self; 8] = [
+        Self::None,
+        Self::Spheres,
+        Self::Bounds,
+        Self::Hierarchy,
+        Self::Grid,
+        Self::Octree,
+        Self::Sah,
+        Self::Bvh,
+    ];
 
     /// The name on the command line.
     #[must_use]
@@ -36,6 +50,8 @@ impl Accel {
             Self::Spheres => "spheres",
             Self::Bounds => "bounds",
             Self::Hierarchy => "hierarchy",
+            Self::Grid => "grid",
+            Self::Octree => "octree",
             Self::Sah => "sah",
             Self::Bvh => "bvh",
         }
@@ -67,7 +83,7 @@ impl FromStr for Accel {
 pub struct AccelSettings {
     /// Which one. Default [`Accel::Bvh`].
     pub kind: Accel,
-    /// Cells of the grid along each axis, 1 to 512. Default `None`: about two cells for each element,
+    /// Cells of the grid along each axis, 1 to 256. Default `None`: about two cells for each element,
     /// more of them along the longer axes.
     pub grid_cells: Option<u32>,
     /// Levels of the octree below its root, 0 to 20. Default 12.
@@ -97,8 +113,13 @@ impl AccelSettings {
             let wrong = TraceError::Setting { name, value: f64::from(value), expected };
             if range.contains(&value) { Ok(()) } else { Err(wrong) }
         };
-        range("cells of the grid", self.grid_cells.unwrap_or(1), 1..=512, "from 1 to 512 along an axis")?;
-        range("depth of the octree", self.octree_depth, 0..=20, "from 0 to 20")?;
+        range(
+            "cells of the grid",
+            self.grid_cells.unwrap_or(1),
+            1..=MOST_CELLS,
+            "from 1 to 256 along an axis",
+        )?;
+        range("depth of the octree", self.octree_depth, 0..=DEEPEST, "from 0 to 20")?;
         range("elements in a leaf", self.leaf_size, 1..=u32::MAX, "at least 1")
     }
 }
