@@ -21,8 +21,8 @@ pub use counters::{Counters, RayCounts, TraceCounts};
 pub use error::TraceError;
 pub use intersect::{
     Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum,
-    Implicit, Intersect, Operation, PlaneSurface, Polygon, Prism, Revolution, RootMethod, Sphere,
-    SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
+    Implicit, Intersect, Operation, PatchSurface, PlaneSurface, Polygon, Prism, Revolution, RootMethod,
+    Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
 };
 #[cfg(test)]
 mod test_support;

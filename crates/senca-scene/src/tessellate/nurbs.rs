@@ -20,7 +20,7 @@ pub(super) fn nurbs(
     settings: &TessellationSettings,
     b: &mut Builder,
 ) -> Result<(), ShapeError> {
-    let e = evaluator(s).map_err(|reason| ShapeError::Malformed { shape: "NURBS surface", reason })?;
+    let e = s.evaluator()?;
     let tolerance = settings.tolerance.over(&s.points);
     let spans = [spans(e.knots_u()), spans(e.knots_v())];
     let steps = match settings.tolerance {
@@ -37,6 +37,16 @@ pub(super) fn nurbs(
     let vs = parameters(&spans[1], per_span(kept.1, 1));
     add_grid(&e, &us, &vs, b);
     Ok(())
+}
+
+impl NurbsSurface {
+    /// The surface ready to be evaluated.
+    ///
+    /// # Errors
+    /// [`ShapeError::Malformed`] when knots, counts, points and weights do not make a surface.
+    pub fn evaluator(&self) -> Result<Evaluator, ShapeError> {
+        evaluator(self).map_err(|reason| ShapeError::Malformed { shape: "NURBS surface", reason })
+    }
 }
 
 /// The surface ready to be evaluated, or what keeps the numbers from being one.

@@ -1,0 +1,235 @@
+//! Pieces of a patch, so small that they are nearly flat, and what is certain about each.
+//!
+//! A cell is a rectangle of a patch's parameters, x in [-1, 1]^2. In its own frame, whose axes are the
+//! derivatives at the centre and the normal there, the surface is nearly the square itself, and a ray
+//! meets it nearly where it meets the plane of that square. How nearly is known: with `spread` and `tilt`,
+//! bounds on how much the derivatives differ over the cell from those at the centre, a ray whose slopes in
+//! the frame are s meets the cell at most once, and not farther than `spread + tilt |s|` from there, as
+//! long as that is below 1 (Krawczyk 1969, applied to rays). So most cells are rejected, rightly, by
+//! intersecting one plane, and in the others Newton's method starts next to the only root.
+
+use senca_math::glam::{BVec3, DMat3, DVec3, DVec4, Mat3, Vec2, Vec3};
+
+use super::net::{Axis, Net};
+use super::patch::quotient;
+use super::roots::Domain;
+
+/// A nearly flat piece of a patch.
+#[derive(Clone, Debug)]
+pub(super) struct Cell {
+    /// Cell frame from normalized space; zero for a cell without a frame.
+    pub local_from_object: Mat3,
+    /// Its point in the middle.
+    pub center: Vec3,
+    /// How much the derivatives differ from those at the centre, in the plane ...
+    pub spread: Vec2,
+    /// ... and out of it. Infinite when nothing is known.
+    pub tilt: f32,
+    /// How far the surface gets from the centre, in the frame.
+    pub extent: Vec3,
+    /// Patch it belongs to.
+    pub patch: u32,
+    /// Middle and half size of its rectangle: multiples of powers of 1/2, and so exact.
+    pub uv: [f32; 4],
+}
+
+/// Error of a place in normalized space in single precision: coordinates and steps of up to 2.
+const PLACE_ERROR: f64 = 1e-6;
+
+/// Error of a distance along the ray within the unit ball, in single precision.
+const PLACE_SLACK: f32 = 4e-6;
+
+/// What is found out about a piece while patches are divided.
+pub(super) struct Survey {
+    pub frame: Option<Frame>,
+    /// Box around the piece in normalized space.
+    pub low: DVec3,
+    pub high: DVec3,
+    /// Which direction to divide.
+    pub axis: Axis,
+    /// Largest of the frame's bounds; infinite without.
+    pub error: f64,
+}
+
+/// The frame of a regular piece.
+pub(super) struct Frame {
+    local_from_object: DMat3,
+    center: DVec3,
+    /// Bounds on the change of the derivatives, summed over both: x, y, z in the frame.
+    change: DVec3,
+    extent: DVec3,
+}
+
+/// Interval per coordinate.
+#[derive(Clone, Copy)]
+struct Range<T> {
+    low: T,
+    high: T,
+}
+
+impl Range<DVec4> {
+    fn of(points: impl Iterator<Item = DVec4>) -> Self {
+        let none = Self { low: DVec4::INFINITY, high: DVec4::NEG_INFINITY };
+        points.fold(none, |r, p| Self { low: r.low.min(p), high: r.high.max(p) })
+    }
+}
+
+/// Smallest and largest product of two intervals, per coordinate.
+fn product(a: Range<DVec3>, low: f64, high: f64) -> Range<DVec3> {
+    let all = [a.low * low, a.low * high, a.high * low, a.high * high];
+    let none = Range { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+    all.iter().fold(none, |r, p| Range { low: r.low.min(*p), high: r.high.max(*p) })
+}
+
+/// Looks at a piece given by its net.
+pub(super) fn survey(net: &Net<DVec4>, is_rational: bool) -> Survey {
+    let places = net.points().iter().map(|p| p.truncate() / p.w);
+    let (low, high) =
+        places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let frame = frame(net, is_rational);
+    let error = frame.as_ref().map_or(f64::INFINITY, |f| f.change.max_element());
+    Survey { frame, low, high, axis: longer_axis(net), error }
+}
+
+/// The axis along which the piece bends more; among flat ones, the longer.
+fn longer_axis(net: &Net<DVec4>) -> Axis {
+    let score = |axis: Axis| {
+        let length = net.derivative(axis).map(|d| d.truncate().length()).fold(0.0, f64::max);
+        let bend = net.bend(axis, |d| d.truncate().length().max(d.w.abs()));
+        bend + 0.1 * length
+    };
+    if score(Axis::U) >= score(Axis::V) { Axis::U } else { Axis::V }
+}
+
+/// The frame at the centre, with its bounds; `None` where the derivatives are not independent.
+fn frame(net: &Net<DVec4>, is_rational: bool) -> Option<Frame> {
+    let homogeneous = net.at(0.5, 0.5);
+    let jet = quotient(&homogeneous);
+    let (du, dv) = (0.5 * jet.du, 0.5 * jet.dv);
+    let normal = du.cross(dv);
+    let area = du.length() * dv.length();
+    let is_regular = normal.length() > 1e-4 * area;
+    if !is_regular {
+        return None;
+    }
+    let local_from_object = DMat3::from_cols(du, dv, normal / normal.length() * area.sqrt()).inverse();
+    let entries = local_from_object.to_cols_array();
+    if !entries.iter().all(|x| x.abs() < 1e12) {
+        return None;
+    }
+    // The piece in its frame, centre at the origin, as a quotient q / w with w = 1 at the centre.
+    let weight = homogeneous.value.w;
+    let local = net.map(|p| {
+        let offset = p.truncate() - jet.value * p.w;
+        (local_from_object * offset / weight).extend(p.w / weight)
+    });
+    let place = Range::of(local.points().iter().map(|p| (p.truncate() / p.w).extend(p.w)));
+    let change = change(&local, Axis::U, DVec3::X, &place, is_rational)
+        + change(&local, Axis::V, DVec3::Y, &place, is_rational);
+    let extent = place.low.abs().max(place.high.abs()).truncate();
+    Some(Frame { local_from_object, center: jet.value, change, extent })
+}
+
+/// How much the derivative along an axis, per half cell, differs from `unit` at most.
+///
+/// For s = q / w it is (q' - s w') / w; each part keeps within the range of its control points.
+fn change(local: &Net<DVec4>, axis: Axis, unit: DVec3, place: &Range<DVec4>, is_rational: bool) -> DVec3 {
+    let slope = Range::of(local.derivative(axis).map(|d| 0.5 * d));
+    let (mut low, mut high) = (slope.low.truncate(), slope.high.truncate());
+    if is_rational {
+        let places = Range { low: place.low.truncate(), high: place.high.truncate() };
+        let bent = product(places, slope.low.w, slope.high.w);
+        let top = Range { low: low - bent.high, high: high - bent.low };
+        let all = product(top, 1.0 / place.high.w, 1.0 / place.low.w);
+        (low, high) = (all.low, all.high);
+    }
+    (low - unit).abs().max((high - unit).abs())
+}
+
+impl Cell {
+    /// The cell of a surveyed piece. Bounds are widened by what single precision loses.
+    pub(super) fn new(patch: u32, domain: &Domain, survey: &Survey) -> Self {
+        let (center, half) = (domain.center(), domain.half());
+        let uv = [center.x, center.y, half.x, half.y].map(|x| x as f32);
+        let Some(frame) = &survey.frame else {
+            return Self {
+                local_from_object: Mat3::ZERO,
+                center: Vec3::ZERO,
+                spread: Vec2::ZERO,
+                tilt: f32::INFINITY,
+                extent: Vec3::INFINITY,
+                patch,
+                uv,
+            };
+        };
+        let rows = frame.local_from_object.transpose();
+        let stretch = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.abs().element_sum());
+        let loss = DVec3::from_array(stretch) * (2.0 * PLACE_ERROR) + 1e-5;
+        let change = (frame.change + loss).as_vec3();
+        Self {
+            local_from_object: frame.local_from_object.as_mat3(),
+            center: frame.center.as_vec3(),
+            spread: change.truncate(),
+            tilt: change.z,
+            extent: (frame.extent + loss).as_vec3(),
+            patch,
+            uv,
+        }
+    }
+
+    /// Its rectangle.
+    pub(super) fn domain(&self) -> Domain {
+        let [u, v, du, dv] = self.uv.map(f64::from);
+        Domain { u: [u - du, u + du], v: [v - dv, v + dv] }
+    }
+
+    /// Where in its frame a ray, given in normalized space, meets its plane, if that shows that there is
+    /// one place at most.
+    #[inline(always)]
+    pub(super) fn meets(&self, origin: Vec3, direction: Vec3) -> Meeting {
+        let o = self.local_from_object * (origin - self.center);
+        let d = self.local_from_object * direction;
+        let slope = d.truncate() / d.z;
+        let x = o.truncate() - o.z * slope;
+        let reach = self.spread + self.tilt * slope.abs();
+        // Not a number when the ray runs along the plane.
+        let most = reach.max_element();
+        let is_one_to_one = most < 0.9;
+        if !is_one_to_one {
+            return self.meets_steeply(o, d);
+        }
+        if (x.abs() - reach).max_element() > 1.0 {
+            Meeting::Never
+        } else {
+            Meeting::Once { near: x, is_sure: most < 1.0 / 3.0 }
+        }
+    }
+
+    /// Whether a ray along the surface can meet the cell at all: the box in its frame.
+    #[cold]
+    fn meets_steeply(&self, o: Vec3, d: Vec3) -> Meeting {
+        if self.tilt == f32::INFINITY {
+            return Meeting::Unknown;
+        }
+        // Interval of the line between each pair of sides; lines along a pair are inside or outside.
+        let along = d.abs().cmple(Vec3::splat(1e-20));
+        let (a, b) = ((-self.extent - o) / d, (self.extent - o) / d);
+        let outside = o.abs().cmpgt(self.extent);
+        let enter = Vec3::select(along, Vec3::NEG_INFINITY, a.min(b));
+        let leave = Vec3::select(along, Vec3::INFINITY, a.max(b));
+        let misses =
+            (along & outside) != BVec3::FALSE || enter.max_element() > leave.min_element() + PLACE_SLACK;
+        if misses { Meeting::Never } else { Meeting::Unknown }
+    }
+}
+
+/// What the plane of a cell tells about a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Meeting {
+    /// The ray does not meet the cell.
+    Never,
+    /// It meets the cell at most once, near here. When this is sure, Newton's method finds the place.
+    Once { near: Vec2, is_sure: bool },
+    /// Anything may be.
+    Unknown,
+}
