@@ -8,6 +8,7 @@ mod film;
 mod intersect;
 mod material;
 mod mesh_surface;
+pub mod path;
 mod primary;
 mod ray;
 pub mod recursive;
@@ -29,6 +30,7 @@ mod test_support;
 
 pub use film::{Area, Film, FilmReport, FilmSettings, Integrator, SamplePlace, Watch};
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
+pub use path::PathSettings;
 pub use primary::PrimaryRays;
 
 pub use ray::Ray;

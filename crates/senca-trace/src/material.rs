@@ -156,6 +156,14 @@ impl<'s> MaterialTable<'s> {
         &self.entry(material).constant
     }
 
+    /// Whether the light that the material gives off differs from place to place: by a texture, or
+    /// because the surface is not there everywhere.
+    #[must_use]
+    pub fn emission_varies(&self, material: usize) -> bool {
+        let entry = self.entry(material);
+        entry.emission.is_some() || entry.alpha_mode != AlphaMode::Opaque
+    }
+
     fn entry(&self, material: usize) -> &Entry<'s> {
         &self.entries[material.min(self.entries.len() - 1)]
     }

@@ -140,6 +140,12 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// A number in [0, 1) that depends on all 64 bits.
+#[inline]
+pub(crate) fn unit_hash(bits: u64) -> f64 {
+    f64::from((mix(bits.wrapping_add(GOLDEN)) >> 32) as u32) * UNIT
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

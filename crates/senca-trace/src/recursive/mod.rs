@@ -26,10 +26,10 @@
 //! and no light goes from matt surface to matt surface. One primary ray makes at most
 //! [`MAX_RAYS_PER_SAMPLE`] rays.
 
-mod background;
+pub(crate) mod background;
 mod follow;
 mod lamps;
-mod media;
+pub(crate) mod media;
 pub mod optics;
 mod plain;
 mod recorder;
