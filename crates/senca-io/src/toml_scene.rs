@@ -9,6 +9,7 @@
 mod animations;
 mod builder;
 mod cameras;
+mod csg;
 mod include;
 mod lights;
 mod materials;
@@ -29,7 +30,7 @@ use builder::Builder;
 use source::{Source, Table};
 use values::Value;
 
-pub use render_hints::{MethodHint, RenderHints, ShadingHint};
+pub use render_hints::{AccelerationHint, AntialiasingHint, MethodHint, RenderHints, ShadingHint};
 
 /// Largest text of a scene file, in bytes. A parsed number takes some sixty times its text in the
 /// worst case; larger meshes have better formats, which a scene file can include.
@@ -117,7 +118,8 @@ fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, ReadError> {
 fn read_root<'a>(root: &mut Table<'a>, builder: &mut Builder<'a>) -> Result<(), ReadError> {
     builder.scene.name = root.read_or("name", "", Value::string)?.to_owned();
     builder.scene.ambient = root.read_or("ambient", LinearRgb::BLACK, Value::color)?;
-    builder.scene.background = root.read_or("background", Background::None, lights::background)?;
+    builder.scene.background =
+        root.read_or("background", Background::None, |value| lights::background(value, builder))?;
     builder.scene.fog = root.read("fog", lights::fog)?;
     builder.attenuation = root.read_or("attenuation", Attenuation::None, lights::attenuation)?;
     builder.read_textures(root)?;

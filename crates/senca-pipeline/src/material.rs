@@ -123,29 +123,31 @@ struct Binder<'s> {
 
 impl Binder<'_> {
     fn resolve(&mut self, material: &Material) -> Result<Resolved, RenderError> {
+        let glass = material.overlay_alpha();
         Ok(Resolved {
-            model: self.model(&material.reflection)?,
+            model: self.model(&material.reflection, glass.unwrap_or(1.0))?,
             emission: material.emission,
             emission_texture: self.bind(material.emission_texture.as_ref(), ColorSpace::Srgb)?,
             normal_texture: self.bind(material.normal_texture.as_ref(), ColorSpace::Linear)?,
             occlusion_texture: self.bind(material.occlusion_texture.as_ref(), ColorSpace::Linear)?,
-            alpha_mode: material.alpha_mode,
+            alpha_mode: if glass.is_some() { AlphaMode::Blend } else { material.alpha_mode },
             double_sided: material.double_sided,
             unlit: material.unlit,
         })
     }
 
-    fn model(&mut self, reflection: &Reflection) -> Result<Model, RenderError> {
+    /// The reflection model, its alpha multiplied by `share`.
+    fn model(&mut self, reflection: &Reflection, share: f32) -> Result<Model, RenderError> {
         Ok(match reflection {
             Reflection::Phong(phong) => Model::Phong {
                 constants: PhongConstants::new(phong),
-                alpha: phong.alpha,
+                alpha: share * phong.alpha,
                 texture: self.bind(phong.texture.as_ref(), ColorSpace::Srgb)?,
                 specular_texture: self.bind(phong.specular_texture.as_ref(), ColorSpace::Srgb)?,
             },
             Reflection::MetallicRoughness(m) => Model::MetallicRoughness {
                 base_color: m.base_color,
-                alpha: m.alpha,
+                alpha: share * m.alpha,
                 metallic: m.metallic,
                 roughness: m.roughness,
                 texture: self.bind(m.base_color_texture.as_ref(), ColorSpace::Srgb)?,

@@ -16,9 +16,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use rayon::prelude::*;
 use senca_math::Control;
 use senca_math::conventions::NO_ID;
-use senca_math::{Image, View};
+use senca_math::{DeviceMap, Image, LinearRgb, View};
 use senca_raster::{Counters, Rasterizer, ScanlineRasterizer, Shading as RasterShading, TiledRasterizer};
-use senca_scene::{Background, Scene};
+use senca_scene::{Background, Environment, Scene};
 use senca_shading::LightRig;
 
 use crate::geometry::World;
@@ -148,7 +148,7 @@ fn draw_faces(
         shader: &shader,
         groups: groups(&shader),
         strokes,
-        paper: Paper::new(scene, settings),
+        paper: Paper::new(scene, settings, view, size),
         control,
         rasterizer: rasterizer(settings),
         drawer: Drawer::default(),
@@ -166,7 +166,7 @@ struct Frame<'a, 'w> {
     shader: &'a Shader<'w>,
     groups: Vec<Group>,
     strokes: Strokes,
-    paper: Paper,
+    paper: Paper<'a>,
     control: &'a Control<'a>,
     rasterizer: Box<dyn Rasterizer>,
     drawer: Drawer,
@@ -384,7 +384,7 @@ impl<'a, 'w> SetupCache<'a, 'w> {
 struct Resolve<'a, 'w> {
     shader: &'a Shader<'w>,
     window: &'a Window,
-    paper: &'a Paper,
+    paper: &'a Paper<'a>,
     planes: &'a Planes,
     strokes: &'a Strokes,
     /// Colours of the opaque surface, if they are known already.
@@ -443,7 +443,7 @@ impl Resolve<'_, '_> {
         let [px, py] = self.window.place(x, y);
         let surface = id != NO_ID;
         let behind = if !surface {
-            self.paper.at((self.window.area.y as usize + y) as u32, self.window.size[1])
+            self.paper.at((self.window.area.y as usize + y) as u32, || [px, py].map(f64::from))
         } else if let Some(stroke) = id.checked_sub(self.shader.world.triangles) {
             self.strokes.shade(self.shader, stroke as usize, px, py)
         } else if let Some(ready) = self.ready {
@@ -468,35 +468,48 @@ pub(crate) fn put_sample(pixel: &mut [f32; 4], rgba: [f32; 4], weight: f32, firs
 }
 
 /// What is seen where nothing is.
-pub(crate) struct Paper {
+pub(crate) struct Paper<'s> {
     background: Background,
+    environment: Option<Environment<'s>>,
+    view: View,
+    size: [u32; 2],
 }
 
-impl Paper {
-    pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
-        let blank = if settings.shading.is_lines() {
-            Background::Color(senca_math::LinearRgb::WHITE)
-        } else {
-            Background::None
-        };
+impl<'s> Paper<'s> {
+    /// The paper of a picture of `size` pixels.
+    pub(crate) fn new(scene: &'s Scene, settings: &Settings, view: &View, size: [u32; 2]) -> Self {
+        let blank =
+            if settings.shading.is_lines() { Background::Color(LinearRgb::WHITE) } else { Background::None };
         let background = match scene.background {
             Background::None => settings.background.unwrap_or(blank),
             background => background,
         };
-        Self { background }
+        let environment = Environment::of_background(scene, background);
+        Self { background, environment, view: *view, size }
     }
 
-    /// Colour times alpha in row `y` of a picture of `height` rows.
-    pub(crate) fn at(&self, y: u32, height: u32) -> [f32; 4] {
+    /// Colour times alpha in row `y` of the picture, seen through the place `[px, py]` in it.
+    pub(crate) fn at(&self, y: u32, place: impl FnOnce() -> [f64; 2]) -> [f32; 4] {
         let color = match self.background {
             Background::None => return [0.0; 4],
             Background::Color(color) => color,
             Background::Gradient { bottom, top } => {
-                let last = height.saturating_sub(1).max(1);
+                let last = self.size[1].saturating_sub(1).max(1);
                 top.lerp(bottom, y as f32 / last as f32)
             }
+            Background::Environment { .. } => self.surroundings(place()),
         };
         [color.r, color.g, color.b, 1.0]
+    }
+
+    /// Light of the surroundings along the projector through a place of the picture.
+    fn surroundings(&self, place: [f64; 2]) -> LinearRgb {
+        let seen = self.environment.as_ref().zip(DeviceMap::to_pixels(self.size[0], self.size[1]).ok());
+        let color = seen.and_then(|(environment, device)| {
+            let ray = self.view.ray_through(&device, place.into())?;
+            Some(environment.color(ray.direction.as_vec3()))
+        });
+        color.unwrap_or(LinearRgb::BLACK)
     }
 
     /// Divides colours by alpha where the paper shows through.

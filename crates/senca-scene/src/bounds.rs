@@ -52,6 +52,8 @@ impl Shape {
                 farthest(patches.iter().flat_map(|patch| patch.points).collect::<Vec<_>>().into_iter(), d)
             }
             Self::Nurbs(surface) => farthest(surface.points.iter().copied(), d),
+            Self::Implicit(surface) => farthest(surface.bounds.corners().into_iter(), d),
+            Self::Csg(csg) => farthest(csg.bounds_in(&DMat4::IDENTITY).corners().into_iter(), d),
         }
     }
 
@@ -66,6 +68,11 @@ impl Shape {
     pub fn bounds_in(&self, world_from_object: &DMat4) -> Aabb {
         if let Self::Mesh(mesh) = self {
             return mesh_bounds(mesh, world_from_object);
+        }
+        if let Self::Csg(csg) = self {
+            let bounds = csg.bounds_in(world_from_object);
+            let finite = bounds.min.is_finite() && bounds.max.is_finite();
+            return if finite { bounds } else { Aabb::EMPTY };
         }
         let offset = world_from_object.w_axis.truncate();
         let reach = |axis: usize, sign: f64| {

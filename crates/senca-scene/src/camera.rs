@@ -13,6 +13,21 @@ pub struct Camera {
     pub name: String,
     /// What it projects.
     pub projection: Projection,
+    /// The lens, for renderers with depth of field; `None` is a pinhole, with everything sharp.
+    /// Default `None`.
+    pub lens: Option<Lens>,
+    /// When the shutter opens and closes, in seconds relative to the moment shown, for renderers with
+    /// motion blur; `None` shows the moment alone. Default `None`.
+    pub shutter: Option<[f64; 2]>,
+}
+
+/// A thin lens (Potmesil and Chakravarty 1981).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Radius of its opening in world units, > 0.
+    pub radius: f64,
+    /// Distance from the eye, along the line of sight, of the plane that is sharp, > 0.
+    pub focus_distance: f64,
 }
 
 /// Projection of a camera.
@@ -54,6 +69,12 @@ const NEAR_SHARE: f64 = 1e-3;
 const DEPTH_MARGIN: f64 = 0.01;
 
 impl Camera {
+    /// A camera with a pinhole and no shutter.
+    #[must_use]
+    pub fn new(name: impl Into<String>, projection: Projection) -> Self {
+        Self { name: name.into(), projection, lens: None, shutter: None }
+    }
+
     /// Width over height that the camera itself gives, for a picture whose size is still open.
     #[must_use]
     pub fn natural_aspect(&self) -> Option<f64> {

@@ -9,7 +9,7 @@
 use senca_math::LinearRgb;
 use senca_math::glam::{DMat3, DMat4, DVec3};
 
-use crate::{Attenuation, Light, LightKind, Node, Scene, Transform};
+use crate::{Attenuation, Background, Light, LightKind, Node, Scene, Transform};
 
 /// Lights with their places, and ambient light.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,14 +51,19 @@ pub fn default_lights(world_from_camera: &DMat4) -> DefaultLights {
 }
 
 impl Scene {
-    /// Whether a node that a root reaches places a light, or there is ambient light. Surfaces that
+    /// Whether a node that a root reaches places a light, or there is ambient light or an environment
+    /// for a background. Surfaces that
     /// give off light count only for methods that spread it, so they do not count here.
     #[must_use]
     pub fn is_lit(&self) -> bool {
         let places = |(node, place): (&Node, &Option<DMat4>)| {
             place.is_some() && node.light.is_some_and(|light| light.index() < self.lights.len())
         };
-        self.ambient.max_component() > 0.0 || self.nodes.iter().zip(&self.world_from_nodes()).any(places)
+        let surroundings =
+            matches!(self.background, Background::Environment { strength, .. } if strength > 0.0);
+        self.ambient.max_component() > 0.0
+            || surroundings
+            || self.nodes.iter().zip(&self.world_from_nodes()).any(places)
     }
 
     /// Adds the default lights for a camera, and their ambient light, unless the scene is lit.

@@ -87,10 +87,10 @@ fn framed(body: &impl Body, bounds: &Aabb, aspect: f64) -> PlacedCamera {
     let (y, z_for_y) = fit(body, axes.y_axis, axes.z_axis, tan_y, center, size);
     let eye = center + axes.x_axis * x + axes.y_axis * y + axes.z_axis * z_for_x.max(z_for_y);
     PlacedCamera {
-        camera: Camera {
-            name: "default".to_owned(),
-            projection: Projection::Perspective { yfov: DEFAULT_YFOV, aspect: None, near: None, far: None },
-        },
+        camera: Camera::new(
+            "default",
+            Projection::Perspective { yfov: DEFAULT_YFOV, aspect: None, near: None, far: None },
+        ),
         world_from_camera: DMat4::from_mat3_translation(axes, eye),
     }
 }
@@ -223,7 +223,7 @@ mod tests {
     fn cameras_are_found_where_nodes_place_them() {
         let mut scene = Scene::of_shape("ball", Shape::Sphere { radius: 1.0 });
         let projection = Projection::Orthographic { height: 2.0, aspect: None, near: None, far: None };
-        scene.cameras.push(Camera { name: String::new(), projection });
+        scene.cameras.push(Camera::new("", projection));
         let place = DMat4::from_translation(DVec3::Z * 5.0);
         let node = Node {
             name: "front".to_owned(),

@@ -38,7 +38,9 @@ mod animation;
 mod bounds;
 mod camera;
 mod counts;
+mod csg;
 mod default_lights;
+mod environment;
 mod faces;
 mod fog;
 mod framing;
@@ -65,9 +67,11 @@ mod validate;
 mod weld;
 
 pub use animation::{Animation, Channel, ChannelTarget, ChannelValues, Interpolation};
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Lens, Projection};
 pub use counts::SceneCounts;
+pub use csg::{Csg, CsgLeaf, CsgNode};
 pub use default_lights::{DefaultLights, default_lights};
+pub use environment::Environment;
 pub use faces::{is_flat_quad, split_quad};
 pub use fog::{Fog, FogFalloff};
 pub use framing::{DEFAULT_YFOV, PlacedCamera, SceneCamera, frame_bounds};
@@ -86,7 +90,7 @@ pub use pose::posed_mesh;
 pub use sample::ChannelValue;
 pub use scene::{Background, Geometry, Instance, Scene, SceneError, Warning};
 pub use senca_math as math;
-pub use shape::{BezierPatch, NurbsSurface, Shape};
+pub use shape::{BezierPatch, ImplicitSurface, NurbsSurface, Shape};
 pub use tessellate::{
     MAX_FACES, PixelTolerance, REVOLUTION_CREASE, ShapeError, TessellationSettings, Tolerance, tessellate,
     triangulated,

@@ -29,10 +29,18 @@ pub struct Material {
     /// Default black.
     pub mirror: LinearRgb,
     /// Part of transmitted light that is seen, k_t of the recursive tracer, per channel in [0, 1].
-    /// Default black.
+    /// Default black. Where it is not black it alone says how much a tracer sees through the surface,
+    /// and `alpha` is for renderers that do not trace: see [`Material::tracer_alpha`].
     pub transmission: LinearRgb,
     /// Index of refraction of the inside, > 0. Default 1.5.
     pub ior: f32,
+    /// Whether `mirror` and `transmission` are weighted by the Fresnel reflectance F of `ior` at the
+    /// angle of incidence: the mirrored share is then `mirror F`, the transmitted one
+    /// `transmission (1 - F)`. Otherwise both are taken as they are. Default false.
+    pub fresnel: bool,
+    /// Absorption of light inside the body, per channel and world unit, >= 0: over the length s the
+    /// share `exp(-absorption s)` is left (Beer-Lambert). Default black, which takes nothing away.
+    pub absorption: LinearRgb,
 }
 
 /// The reflection models.
@@ -137,6 +145,56 @@ impl Default for Material {
             mirror: LinearRgb::BLACK,
             transmission: LinearRgb::BLACK,
             ior: 1.5,
+            fresnel: false,
+            absorption: LinearRgb::BLACK,
         }
+    }
+}
+
+impl Material {
+    /// Whether light goes through.
+    #[must_use]
+    pub fn is_transmissive(&self) -> bool {
+        self.transmission.max_component() > 0.0
+    }
+
+    /// The opacity, as a factor on alpha, by which a renderer without transmitted rays shows a material
+    /// that transmits but is not written with an alpha for such renderers: what transmission leaves,
+    /// at least 1/10 so that it stays visible. It is laid over what is behind. `None` for materials
+    /// that do not transmit, and for those with an alpha of their own.
+    #[must_use]
+    pub fn overlay_alpha(&self) -> Option<f32> {
+        let opaque = self.alpha_mode == AlphaMode::Opaque;
+        let left = (1.0 - self.transmission.max_component()).max(0.1);
+        (opaque && self.is_transmissive()).then_some(left)
+    }
+
+    /// The opacity that a renderer with transmitted rays gives a surface whose alpha, texture included,
+    /// is `alpha`: 1 where the material transmits, so that what is behind is not counted twice.
+    ///
+    /// Glass is often written with both, an alpha for renderers that lay colours over each other and
+    /// a transmission for those that trace.
+    #[must_use]
+    pub fn tracer_alpha(&self, alpha: f32) -> f32 {
+        if self.is_transmissive() || self.alpha_mode == AlphaMode::Opaque { 1.0 } else { alpha }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn glass_is_seen_through_once() {
+        let opaque = Material::default();
+        assert_eq!((opaque.overlay_alpha(), opaque.tracer_alpha(0.3)), (None, 1.0));
+        let veil = Material { alpha_mode: AlphaMode::Blend, ..Material::default() };
+        assert_eq!((veil.overlay_alpha(), veil.tracer_alpha(0.3)), (None, 0.3));
+        let glass = Material { transmission: LinearRgb::splat(0.75), ..Material::default() };
+        assert_eq!((glass.overlay_alpha(), glass.tracer_alpha(0.3)), (Some(0.25), 1.0));
+        let both = Material { transmission: LinearRgb::WHITE, ..veil };
+        assert_eq!((both.overlay_alpha(), both.tracer_alpha(0.3)), (None, 1.0));
+        let clear = Material { transmission: LinearRgb::WHITE, ..Material::default() };
+        assert_eq!(clear.overlay_alpha(), Some(0.1));
     }
 }

@@ -288,7 +288,7 @@ mod tests {
     fn nodes_and_cameras_move_and_matrices_are_taken_apart() {
         let mut scene = Scene::of_shape("ball", Shape::Sphere { radius: 1.0 });
         let projection = Projection::Orthographic { height: 2.0, aspect: None, near: None, far: None };
-        scene.cameras.push(Camera { name: "eye".to_owned(), projection });
+        scene.cameras.push(Camera::new("eye", projection));
         let turned = DMat4::from_scale(DVec3::splat(2.0)) * DMat4::from_rotation_y(1.0);
         scene.nodes[0].transform = Transform::Matrix(turned);
         scene.nodes[0].camera = Some(CameraId(0));

@@ -4,8 +4,8 @@ use senca_math::LinearRgb;
 use senca_math::glam::DMat4;
 
 use crate::{
-    Animation, Camera, CameraId, Fog, GeometryId, Light, LightId, Material, MaterialId, MeshError, Node,
-    NodeId, Shape, Skin, Texture, TextureImage,
+    Animation, Camera, CameraId, Fog, GeometryId, ImageId, Light, LightId, Material, MaterialId, MeshError,
+    Node, NodeId, Shape, Skin, Texture, TextureImage,
 };
 
 /// Everything there is to see. Entries name each other by typed index; a reader checks
@@ -58,6 +58,17 @@ pub enum Background {
         bottom: LinearRgb,
         /// Colour of the top row.
         top: LinearRgb,
+    },
+    /// Surroundings on an endless sphere, from a latitude-longitude picture: its top row is straight
+    /// up (+y), its middle column lies towards -z, columns to the right of it turn towards +x. See
+    /// [`crate::Environment`].
+    Environment {
+        /// The picture, in linear light where it holds floats.
+        image: ImageId,
+        /// Factor on its colours, >= 0.
+        strength: f32,
+        /// Turn of the surroundings about +y, in radians, counter-clockwise seen from above.
+        rotation: f32,
     },
 }
 

@@ -4,8 +4,9 @@
 //! plane y = 0. Size and place come from the node's transform on top.
 
 use senca_math::glam::{DVec2, DVec3};
+use senca_math::{Aabb, Expression};
 
-use crate::Mesh;
+use crate::{Csg, Mesh};
 
 /// The form of a geometry, in object space, lengths in world units.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,6 +104,38 @@ pub enum Shape {
     },
     /// A trimmed-free NURBS surface.
     Nurbs(NurbsSurface),
+    /// The surface f(x, y, z) = 0.
+    Implicit(ImplicitSurface),
+    /// A body put together from closed bodies.
+    Csg(Csg),
+}
+
+/// The surface f(x, y, z) = 0 within a box; the inside is where f < 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImplicitSurface {
+    /// The formula of f.
+    pub expression: Expression,
+    /// The box, in object space, in which the surface is looked for; what lies outside is not there.
+    /// Default -1 to 1 along each axis.
+    pub bounds: Aabb,
+    /// Whether the body f < 0 is closed where the box cuts it, by parts of the box's sides; otherwise
+    /// the surface ends there and shows its back. Default true.
+    pub capped: bool,
+}
+
+impl ImplicitSurface {
+    /// The surface in the box from -1 to 1, capped.
+    #[must_use]
+    pub fn new(expression: Expression) -> Self {
+        Self { expression, bounds: Aabb { min: -DVec3::ONE, max: DVec3::ONE }, capped: true }
+    }
+
+    /// Whether `point` is in the body: f < 0 and within the box.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        let Aabb { min, max } = self.bounds;
+        point.cmpge(min).all() && point.cmple(max).all() && self.expression.value(point) < 0.0
+    }
 }
 
 /// A bicubic Bézier patch.

@@ -17,6 +17,7 @@
 //! Flat shapes are exact with as few faces as they have sides and are not divided further.
 
 mod build;
+mod contour;
 mod lathe;
 mod nurbs;
 mod patches;

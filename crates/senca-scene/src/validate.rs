@@ -120,11 +120,31 @@ impl Scene {
         let material =
             |id: crate::MaterialId| index(|| what.to_owned(), "material", id.0, self.materials.len());
         geometry.material.map_or(Ok(()), material)?;
-        let Shape::Mesh(mesh) = &geometry.shape else { return Ok(()) };
-        mesh.check()
-            .and_then(|()| mesh.check_finite())
-            .map_err(|error| SceneError::Mesh { what: what.to_owned(), error })?;
-        mesh.surfaces.iter().filter_map(|s| s.material).try_for_each(material)
+        self.check_shape(what, &geometry.shape)
+    }
+
+    /// What of a shape is checked before it is used: meshes, trees of bodies, materials.
+    fn check_shape(&self, what: &str, shape: &Shape) -> Check {
+        let material =
+            |id: crate::MaterialId| index(|| what.to_owned(), "material", id.0, self.materials.len());
+        match shape {
+            Shape::Mesh(mesh) => {
+                mesh.check()
+                    .and_then(|()| mesh.check_finite())
+                    .map_err(|error| SceneError::Mesh { what: what.to_owned(), error })?;
+                mesh.surfaces.iter().filter_map(|s| s.material).try_for_each(material)
+            }
+            Shape::Csg(csg) => {
+                csg.check().map_err(|error| SceneError::Invalid {
+                    what: what.to_owned(),
+                    reason: error.to_string(),
+                })?;
+                let leaves = csg.leaves();
+                leaves.iter().filter_map(|leaf| leaf.material).try_for_each(material)?;
+                leaves.iter().try_for_each(|leaf| self.check_shape(what, &leaf.shape))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn check_material(&self, what: &str, material: &Material) -> Check {
@@ -195,6 +215,13 @@ impl Scene {
             Background::None => [LinearRgb::BLACK; 2],
             Background::Color(color) => [color; 2],
             Background::Gradient { bottom, top } => [bottom, top],
+            Background::Environment { image, strength, rotation } => {
+                let what = || "the background".to_owned();
+                index(what, "image", image.0, self.images.len())?;
+                number(what, f64::from(strength), strength >= 0.0, "a strength of 0 or more")?;
+                number(what, f64::from(rotation), true, "a finite rotation")?;
+                [LinearRgb::BLACK; 2]
+            }
         };
         if !colors.iter().chain([&self.ambient]).all(|c| c.is_finite()) {
             return invalid("the scene".to_owned(), "background or ambient light is not finite");
@@ -308,6 +335,11 @@ impl Scene {
             let what = named("geometry", i, &geometry.name);
             if geometry.material.take_if(|id| id.index() >= materials).is_some() {
                 warnings.push(Warning(format!("{what}: unusable material dropped")));
+            }
+            if let Shape::Csg(csg) = &mut geometry.shape {
+                for leaf in csg.leaves_mut() {
+                    leaf.material.take_if(|id| id.index() >= materials);
+                }
             }
             let Shape::Mesh(mesh) = &mut geometry.shape else { continue };
             for surface in &mut mesh.surfaces {
@@ -432,7 +464,7 @@ fn texture_refs(material: &Material) -> impl Iterator<Item = TextureRef> {
 }
 
 fn material_colors(material: &Material) -> Vec<LinearRgb> {
-    let mut colors = vec![material.emission, material.mirror, material.transmission];
+    let mut colors = vec![material.emission, material.mirror, material.transmission, material.absorption];
     match &material.reflection {
         Reflection::Phong(p) => colors.extend([p.ambient, p.diffuse, p.specular, LinearRgb::splat(p.alpha)]),
         Reflection::MetallicRoughness(m) => colors.extend([m.base_color, LinearRgb::splat(m.alpha)]),
@@ -505,6 +537,14 @@ fn check_camera(what: &str, camera: &Camera) -> Check {
     let value = |name: &'static str, x: f64, ok: bool, expected| {
         number(|| format!("{what}: {name}"), x, ok, expected)
     };
+    if let Some(lens) = camera.lens {
+        value("radius of the lens", lens.radius, lens.radius > 0.0, "above 0")?;
+        value("focus distance", lens.focus_distance, lens.focus_distance > 0.0, "above 0")?;
+    }
+    if let Some([open, close]) = camera.shutter {
+        value("opening of the shutter", open, true, "finite")?;
+        value("closing of the shutter", close, close >= open, "at the opening or later")?;
+    }
     let optional = |name, x: Option<f64>, ok: fn(f64) -> bool, expected| {
         x.map_or(Ok(()), |x| value(name, x, ok(x), expected))
     };

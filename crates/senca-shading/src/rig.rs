@@ -2,7 +2,7 @@
 
 use senca_math::LinearRgb;
 use senca_math::glam::Vec3;
-use senca_scene::{LightKind, Scene};
+use senca_scene::{Environment, LightKind, Scene};
 
 use crate::{Incident, ShadingLight};
 
@@ -27,10 +27,11 @@ pub struct ShadingPoint {
 }
 
 impl LightRig {
-    /// The lights that the nodes of `scene` place, in the order of nodes.
+    /// The lights that the nodes of `scene` place, in the order of nodes. A scene with an environment
+    /// for its background and no ambient light of its own gets the environment's mean colour as that.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
-        let mut rig = Self { ambient: scene.ambient, lights: Vec::new() };
+        let mut rig = Self { ambient: ambient(scene), lights: Vec::new() };
         for (node, world_from_node) in scene.nodes.iter().zip(scene.world_from_nodes()) {
             let (Some(id), Some(world_from_light)) = (node.light, world_from_node) else { continue };
             let Some(light) = scene.lights.get(id.index()) else { continue };
@@ -51,6 +52,14 @@ impl LightRig {
             }
         }
     }
+}
+
+/// Ambient light of a scene without its lights.
+fn ambient(scene: &Scene) -> LinearRgb {
+    if scene.ambient != LinearRgb::BLACK {
+        return scene.ambient;
+    }
+    Environment::of(scene).map_or(LinearRgb::BLACK, |environment| environment.mean())
 }
 
 #[cfg(test)]

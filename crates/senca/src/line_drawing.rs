@@ -49,12 +49,12 @@ pub fn render_svg(
     Ok((svg, [crop.width, crop.height], report))
 }
 
-/// The colour of the paper. A drawing has one; a gradient becomes white.
+/// The colour of the paper. A drawing has one; a gradient or an environment becomes white.
 fn paper(background: Background) -> Option<LinearRgb> {
     match background {
         Background::None => None,
         Background::Color(color) => Some(color),
-        Background::Gradient { .. } => match default_background(true) {
+        Background::Gradient { .. } | Background::Environment { .. } => match default_background(true) {
             Background::Color(color) => Some(color),
             _ => None,
         },

@@ -136,7 +136,7 @@ fn camera_of_caller(
     });
     let world_from_camera = world_from_look_at(eye, target, up)?;
     let projection = Projection::Perspective { yfov, aspect: None, near: None, far: None };
-    Ok(PlacedCamera { camera: Camera { name: String::new(), projection }, world_from_camera })
+    Ok(PlacedCamera { camera: Camera::new("", projection), world_from_camera })
 }
 
 /// What is seen behind a scene that says nothing: a quiet grey that grows lighter towards the top,

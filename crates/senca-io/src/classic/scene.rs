@@ -190,7 +190,7 @@ impl ClassicScene {
             }
             ClassicProjection::Parallel => Projection::Orthographic { height, aspect, near: None, far: None },
         };
-        scene.cameras.push(Camera { name: "view".to_owned(), projection });
+        scene.cameras.push(Camera::new("view", projection));
         let z = self.vpn.normalize_or(DVec3::Z);
         let x = side(self.vpn, self.vup).unwrap_or(DVec3::X);
         let eye = self.vrp + z * distance;

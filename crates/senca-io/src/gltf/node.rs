@@ -311,7 +311,7 @@ fn camera(document: &Document<'_>, i: usize, json: &json::Camera) -> Camera {
         document.warn(format!("cameras[{i}]: has no usable projection; a view angle of 45 degrees is used"));
         default
     });
-    Camera { name: json.name.clone(), projection }
+    Camera::new(json.name.clone(), projection)
 }
 
 fn light(document: &Document<'_>, i: usize, json: &json::Light) -> Light {

@@ -37,6 +37,8 @@ pub(super) fn add(entry: &Entry, scene: &mut Scene, pictures: &mut Pictures<'_>)
         mirror: if matches!(illum, 3..=7 | 9) { specular(entry) } else { LinearRgb::BLACK },
         transmission: transmission(entry, illum, alpha),
         ior: entry.ni.filter(|&ni| ni > 0.0).unwrap_or(1.5),
+        fresnel: matches!(illum, 5 | 7),
+        absorption: LinearRgb::BLACK,
     })
 }
 

@@ -197,6 +197,7 @@ impl<'a> Builder<'a> {
         }
         let ReadShape { shape, place } = match kind {
             Kind::Mesh => meshes::read(table, &mut |value| self.material(value))?.into(),
+            Kind::Csg => self.csg(table)?.into(),
             other => shapes::read(table, other)?,
         };
         self.check_morph(table, &shape)?;

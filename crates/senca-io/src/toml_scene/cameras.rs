@@ -5,7 +5,7 @@ use senca_math::view::{
     CentralByNormal, Normalization1991, ParallelByNormal, View1991, ViewError, ViewParameters, ViewWindow,
     ViewingOperation,
 };
-use senca_scene::{Camera, CameraId, Node, Projection, Transform};
+use senca_scene::{Camera, CameraId, Lens, Node, Projection, Transform};
 
 use super::builder::{Builder, Part};
 use super::source::{Result, Table};
@@ -44,8 +44,10 @@ impl<'a> Builder<'a> {
             None => lens(&mut table)?,
             Some(operation) => viewing_operation(&mut table, operation)?,
         };
+        let lens = table.read("lens", thin_lens)?;
+        let shutter = table.read("shutter", shutter)?;
         table.finish()?;
-        self.scene.cameras.push(Camera { name: name.clone(), projection });
+        self.scene.cameras.push(Camera { lens, shutter, ..Camera::new(name.clone(), projection) });
         let camera = Some(CameraId(self.scene.cameras.len() as u32 - 1));
         Ok(Part::of(Node { name, transform, camera, ..Node::default() }))
     }
@@ -91,6 +93,24 @@ fn lens(table: &mut Table<'_>) -> Result<(Projection, Transform)> {
         }
     };
     Ok((projection, transform))
+}
+
+/// `[camera.lens]`: `radius` and `focus`.
+fn thin_lens(value: Value<'_>) -> Result<Lens> {
+    let mut table = value.table("the lens")?;
+    let radius = table.require("radius")?.positive()?;
+    let focus_distance = table.require("focus")?.positive()?;
+    table.finish()?;
+    Ok(Lens { radius, focus_distance })
+}
+
+/// How many seconds the shutter is open, from the moment shown on, or `[open, close]`.
+fn shutter(value: Value<'_>) -> Result<[f64; 2]> {
+    if value.is_number() {
+        return Ok([0.0, value.not_negative()?]);
+    }
+    let times: [f64; 2] = value.array("a number of seconds, or two: open and close", Value::number)?;
+    if times[0] <= times[1] { Ok(times) } else { Err(value.refuse("must open before it closes")) }
 }
 
 fn fov(value: Value<'_>) -> Result<f64> {

@@ -144,9 +144,7 @@ pub(super) fn absorb(scene: &mut Scene, mut other: Scene, uri: &str) -> Include 
     other.materials.iter_mut().for_each(|material| shift.material(material));
     for geometry in &mut other.geometries {
         shift.material_id(&mut geometry.material);
-        if let Shape::Mesh(mesh) = &mut geometry.shape {
-            mesh.surfaces.iter_mut().for_each(|surface| shift.material_id(&mut surface.material));
-        }
+        shift.shape(&mut geometry.shape);
     }
     for node in &mut other.nodes {
         shift.material_id(&mut node.material);
@@ -177,6 +175,20 @@ struct Shift {
 impl Shift {
     fn material_id(&self, id: &mut Option<MaterialId>) {
         *id = id.map(|id| MaterialId(id.0 + self.materials));
+    }
+
+    /// Materials that the shape's surfaces and bodies name.
+    fn shape(&self, shape: &mut Shape) {
+        match shape {
+            Shape::Mesh(mesh) => mesh.surfaces.iter_mut().for_each(|s| self.material_id(&mut s.material)),
+            Shape::Csg(csg) => {
+                for leaf in csg.leaves_mut() {
+                    self.material_id(&mut leaf.material);
+                    self.shape(&mut leaf.shape);
+                }
+            }
+            _ => {}
+        }
     }
 
     fn texture(&self, texture: &mut Option<TextureRef>) {

@@ -1,7 +1,9 @@
 //! Lights, attenuation, fog, background.
 
 use senca_math::LinearRgb;
-use senca_scene::{Attenuation, Background, Fog, FogFalloff, Light, LightId, LightKind, Node, SpotFalloff};
+use senca_scene::{
+    Attenuation, Background, ColorSpace, Fog, FogFalloff, Light, LightId, LightKind, Node, SpotFalloff,
+};
 
 use super::builder::{Builder, Part};
 use super::source::{Result, Table};
@@ -192,12 +194,19 @@ pub(super) fn fog(value: Value<'_>) -> Result<Fog> {
     Ok(Fog { color, falloff })
 }
 
-/// A colour, or `{ bottom, top }`.
-pub(super) fn background(value: Value<'_>) -> Result<Background> {
+/// A colour, or `{ bottom, top }`, or `{ environment, strength, rotation }`.
+pub(super) fn background<'a>(value: Value<'a>, builder: &mut Builder<'a>) -> Result<Background> {
     if !value.is_table() {
         return value.color().map(Background::Color);
     }
     let mut table = value.table("the background")?;
+    if let Some(file) = table.get("environment") {
+        let image = builder.image_file(file, ColorSpace::Srgb)?;
+        let strength = table.read_or("strength", 1.0, Value::not_negative)? as f32;
+        let rotation = table.read_or("rotation", 0.0, Value::number)?.to_radians() as f32;
+        table.finish()?;
+        return Ok(Background::Environment { image, strength, rotation });
+    }
     let bottom = table.require("bottom")?.color()?;
     let top = table.require("top")?.color()?;
     table.finish()?;

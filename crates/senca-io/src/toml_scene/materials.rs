@@ -75,6 +75,8 @@ impl<'a> Builder<'a> {
             mirror: table.read_or("mirror", LinearRgb::BLACK, Value::reflectance)?,
             transmission: table.read_or("transmission", LinearRgb::BLACK, Value::reflectance)?,
             ior: table.read_or("ior", 1.5, Value::positive)? as f32,
+            fresnel: table.read_or("fresnel", false, Value::boolean)?,
+            absorption: table.read_or("absorption", LinearRgb::BLACK, Value::color)?,
         })
     }
 
@@ -192,7 +194,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The picture file that a value names; each file is read once.
-    fn image_file(&mut self, value: Value<'a>, space: ColorSpace) -> Result<ImageId> {
+    pub(super) fn image_file(&mut self, value: Value<'a>, space: ColorSpace) -> Result<ImageId> {
         let uri = value.string()?;
         if let Some(&id) = self.image_of.get(&(uri, space == ColorSpace::Srgb)) {
             return Ok(id);

@@ -18,6 +18,47 @@ pub struct RenderHints {
     pub samples: Option<u32>,
     /// Time of the animations in seconds.
     pub time: Option<f64>,
+    /// Deepest nesting of reflected and transmitted rays, MaxNest of the recursive tracer, from 0 to
+    /// 10^6.
+    pub max_depth: Option<u32>,
+    /// How a tracer smooths edges.
+    pub aa: Option<AntialiasingHint>,
+    /// How a tracer finds what a ray meets.
+    pub accel: Option<AccelerationHint>,
+}
+
+/// Ways of a tracer to smooth edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AntialiasingHint {
+    /// One ray through the middle of each pixel.
+    None,
+    /// One ray at a random place in each pixel.
+    Jitter,
+    /// A regular grid of rays in each pixel.
+    Super,
+    /// More rays where neighbouring ones differ.
+    Adaptive,
+    /// Evenly spread places and a reconstruction filter.
+    Filter,
+}
+
+/// Ways of a tracer to find what a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccelerationHint {
+    /// Every object is tried.
+    None,
+    /// A sphere around each object.
+    Spheres,
+    /// A box around each object.
+    Boxes,
+    /// The hierarchy of the scene's nodes.
+    Nodes,
+    /// A uniform grid.
+    Grid,
+    /// An octree.
+    Octree,
+    /// A hierarchy of bounding boxes.
+    Bvh,
 }
 
 /// Ways to make a picture.
@@ -57,6 +98,24 @@ const METHODS: [(&str, MethodHint); 4] = [
     ("path", MethodHint::Path),
 ];
 
+const ANTIALIASINGS: [(&str, AntialiasingHint); 5] = [
+    ("none", AntialiasingHint::None),
+    ("jitter", AntialiasingHint::Jitter),
+    ("super", AntialiasingHint::Super),
+    ("adaptive", AntialiasingHint::Adaptive),
+    ("filter", AntialiasingHint::Filter),
+];
+
+const ACCELERATIONS: [(&str, AccelerationHint); 7] = [
+    ("none", AccelerationHint::None),
+    ("spheres", AccelerationHint::Spheres),
+    ("boxes", AccelerationHint::Boxes),
+    ("nodes", AccelerationHint::Nodes),
+    ("grid", AccelerationHint::Grid),
+    ("octree", AccelerationHint::Octree),
+    ("bvh", AccelerationHint::Bvh),
+];
+
 const SHADINGS: [(&str, ShadingHint); 6] = [
     ("wire", ShadingHint::Wire),
     ("hidden-line", ShadingHint::HiddenLine),
@@ -85,6 +144,9 @@ pub(super) fn read(value: Value<'_>, cameras: &[&str]) -> Result<RenderHints> {
         camera,
         samples: table.read("samples", |value| value.whole(1, 1 << 16))?,
         time: table.read("time", Value::number)?,
+        max_depth: table.read("max_depth", |value| value.whole(0, 1_000_000))?,
+        aa: table.read("aa", |value| value.choice(&ANTIALIASINGS))?,
+        accel: table.read("accel", |value| value.choice(&ACCELERATIONS))?,
     };
     table.finish()?;
     Ok(hints)

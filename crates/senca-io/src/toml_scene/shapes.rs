@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use senca_math::glam::{DQuat, DVec2, DVec3};
-use senca_scene::{Shape, Transform};
+use senca_math::{Aabb, Expression};
+use senca_scene::{ImplicitSurface, Shape, Transform};
 
 use super::source::{Result, Table};
 use super::transforms::{rigid, translation, turn_y_to};
@@ -43,9 +44,11 @@ pub(super) enum Kind {
     TriangleFan,
     QuadStrip,
     QuadMesh,
+    Implicit,
+    Csg,
 }
 
-const KINDS: [(&str, Kind); 18] = [
+const KINDS: [(&str, Kind); 20] = [
     ("sphere", Kind::Sphere),
     ("ellipsoid", Kind::Ellipsoid),
     ("box", Kind::Box),
@@ -64,6 +67,8 @@ const KINDS: [(&str, Kind); 18] = [
     ("triangle-fan", Kind::TriangleFan),
     ("quad-strip", Kind::QuadStrip),
     ("quad-mesh", Kind::QuadMesh),
+    ("implicit", Kind::Implicit),
+    ("csg", Kind::Csg),
 ];
 
 /// The kind that the value of `shape` names.
@@ -71,8 +76,8 @@ pub(super) fn kind(value: Value<'_>) -> Result<Kind> {
     value.choice(&KINDS)
 }
 
-/// Reads the keys of a shape of this kind. Meshes are read by [`meshes::read`], since their surfaces
-/// name materials.
+/// Reads the keys of a shape of this kind. Meshes and trees of bodies are read elsewhere, since their
+/// parts name materials.
 pub(super) fn read(table: &mut Table<'_>, kind: Kind) -> Result<ReadShape> {
     match kind {
         Kind::Sphere => sphere(table),
@@ -88,7 +93,8 @@ pub(super) fn read(table: &mut Table<'_>, kind: Kind) -> Result<ReadShape> {
         Kind::Revolution => revolution(table),
         Kind::Bezier => patches::bezier(table).map(Into::into),
         Kind::Nurbs => patches::nurbs(table).map(Into::into),
-        Kind::Mesh => Err(table.error("a mesh cannot stand here")),
+        Kind::Mesh | Kind::Csg => Err(table.error("a shape with parts cannot stand here")),
+        Kind::Implicit => implicit(table),
         Kind::TriangleStrip => meshes::triangle_strip(table).map(Into::into),
         Kind::TriangleFan => meshes::triangle_fan(table).map(Into::into),
         Kind::QuadStrip => meshes::quad_strip(table).map(Into::into),
@@ -230,6 +236,28 @@ fn revolution(table: &mut Table<'_>) -> Result<ReadShape> {
     }
     let angle = table.read_or("angle", TAU, |value| value.angle(0.0, 360.0))?;
     Ok(Shape::Revolution { profile, bezier, angle }.into())
+}
+
+/// `expression` within the box from `min` to `max`.
+fn implicit(table: &mut Table<'_>) -> Result<ReadShape> {
+    let value = table.require("expression")?;
+    let text = value.string()?;
+    let expression = Expression::parse(text).map_err(|error| value.error_within(error.column(), &error))?;
+    let corner = |value: Value<'_>| {
+        if value.is_number() { value.number().map(DVec3::splat) } else { value.vec3() }
+    };
+    let min = table.read_or("min", -DVec3::ONE, corner)?;
+    let max = table.read_or("max", DVec3::ONE, corner)?;
+    if !min.cmplt(max).all() {
+        let message = "\"max\" must be greater than \"min\" in every coordinate";
+        return Err(table
+            .first_of(&["max", "min"])
+            .and_then(|key| table.get(key))
+            .map_or_else(|| table.error(message), |value| value.error(message)));
+    }
+    let capped = table.read_or("capped", true, Value::boolean)?;
+    let surface = ImplicitSurface { expression, bounds: Aabb { min, max }, capped };
+    Ok(ReadShape { shape: Shape::Implicit(surface), place: at(table, "center")? })
 }
 
 /// A list of at least `least` points `[x, y]`.

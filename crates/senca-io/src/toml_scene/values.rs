@@ -35,6 +35,17 @@ impl<'a> Value<'a> {
         self.source.error(&self.span(), message)
     }
 
+    /// An error about the character at `column` (from 1) of this string: at its place in the text
+    /// where the string stands there as it is, else at the string.
+    pub(super) fn error_within(&self, column: usize, error: &dyn std::fmt::Display) -> ReadError {
+        let span = self.span();
+        let content = self.as_str().unwrap_or_default();
+        let raw = self.source.text.get(span.clone()).unwrap_or_default();
+        let before = content.char_indices().nth(column - 1).map_or(content.len(), |(at, _)| at);
+        let at = raw.find(content).map_or(span.start, |start| span.start + start + before);
+        self.source.error(&(at..at), format!("\"{}\": {error}", self.key))
+    }
+
     /// An error at this value that begins with its key: `"radius" must be ...`.
     pub(super) fn refuse(&self, predicate: impl std::fmt::Display) -> ReadError {
         self.error(format!("\"{}\" {predicate}", self.key))

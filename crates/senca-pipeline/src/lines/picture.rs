@@ -34,7 +34,7 @@ pub(crate) fn draw(
     control.report(0.5);
     let mut seconds = 0.0;
     timed(&mut seconds, || {
-        draw_segments(&lines, &Paper::new(scene, settings), settings, image, area, control)
+        draw_segments(&lines, &Paper::new(scene, settings, view, size), settings, image, area, control)
     })?;
     report.seconds.raster = seconds;
     report.bands = bands(area, 0).len() as u32;
@@ -43,7 +43,7 @@ pub(crate) fn draw(
 
 fn draw_segments(
     lines: &[Segment],
-    paper: &Paper,
+    paper: &Paper<'_>,
     settings: &Settings,
     image: &mut Image,
     area: &Crop,
@@ -69,12 +69,14 @@ fn draw_sample(
     lines: &[Segment],
     settings: &Settings,
     window: &Window,
-    paper: &Paper,
+    paper: &Paper<'_>,
     color: &mut [[f32; 4]],
 ) -> Result<Counters, RenderError> {
     let area = window.area;
     for (y, row) in color.chunks_mut(area.width as usize).enumerate() {
-        row.fill(paper.at(area.y + y as u32, window.size[1]));
+        for (x, pixel) in row.iter_mut().enumerate() {
+            *pixel = paper.at(area.y + y as u32, || window.place(x, y).map(f64::from));
+        }
     }
     let too_large = |_| RenderError::ImageTooLarge {
         width: area.width,

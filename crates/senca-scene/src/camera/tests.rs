@@ -6,7 +6,7 @@ use senca_math::{CentralByNormal, ParallelByNormal, ViewParameters};
 use super::*;
 
 fn camera(projection: Projection) -> Camera {
-    Camera { name: String::new(), projection }
+    Camera::new("", projection)
 }
 
 fn perspective(aspect: Option<f64>, near: Option<f64>, far: Option<f64>) -> Camera {

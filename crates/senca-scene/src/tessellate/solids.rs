@@ -9,8 +9,8 @@ use super::build::Builder;
 use super::lathe::{Lathe, Run, Sample, Wrapping};
 use super::tolerance::{bounded_steps, steps_around};
 use super::{
-    MAX_FACES, ShapeError, TessellationSettings, Tolerance, not_negative, nurbs, patches, polygon, positive,
-    revolution,
+    MAX_FACES, ShapeError, TessellationSettings, Tolerance, contour, not_negative, nurbs, patches, polygon,
+    positive, revolution,
 };
 use crate::{Mesh, Shape};
 
@@ -64,6 +64,8 @@ pub(super) fn mesh_of(shape: &Shape, settings: &TessellationSettings) -> Result<
         }
         Shape::BezierPatches { patches } => patches::bezier_patches(patches, settings, b)?,
         Shape::Nurbs(surface) => nurbs::nurbs(surface, settings, b)?,
+        Shape::Implicit(surface) => return contour::implicit(surface, settings),
+        Shape::Csg(csg) => return contour::csg(csg, settings),
     }
     Ok(builder.mesh)
 }

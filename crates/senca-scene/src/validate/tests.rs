@@ -42,7 +42,7 @@ fn whole() -> Scene {
         kind: LightKind::Spot(SpotFalloff::Smooth { inner: 0.1, outer: 0.2 }),
     });
     let projection = Projection::Perspective { yfov: 1.0, aspect: None, near: Some(1.0), far: Some(2.0) };
-    scene.add_camera(Camera { name: String::new(), projection });
+    scene.add_camera(Camera::new("", projection));
     scene.skins.push(Skin {
         name: String::new(),
         joints: vec![NodeId(1)],

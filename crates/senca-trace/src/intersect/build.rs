@@ -3,7 +3,9 @@
 use senca_math::glam::DVec3;
 use senca_scene::{Shape, ShapeError};
 
-use super::{Cuboid, Disc, Ellipsoid, Frustum, PlaneSurface, Polygon, Prism, Revolution, Sphere, Torus};
+use super::{
+    Cuboid, Disc, Ellipsoid, Frustum, Implicit, PlaneSurface, Polygon, Prism, Revolution, Sphere, Torus,
+};
 use crate::Intersect;
 
 /// What builds the surfaces of shapes that have accelerators of their own.
@@ -20,7 +22,10 @@ pub fn surface_of<'s>(
     elsewhere: &mut Elsewhere<'_, 's>,
 ) -> Result<Box<dyn Intersect + 's>, ShapeError> {
     Ok(match shape {
-        Shape::Mesh(_) | Shape::BezierPatches { .. } | Shape::Nurbs(_) => elsewhere(shape)?,
+        Shape::Mesh(_) | Shape::BezierPatches { .. } | Shape::Nurbs(_) | Shape::Csg(_) => elsewhere(shape)?,
+        Shape::Implicit(surface) => {
+            Box::new(Implicit::new(surface.expression.clone(), surface.bounds, surface.capped)?)
+        }
         Shape::Sphere { radius } => Box::new(Sphere::new(positive("sphere", "radius", *radius)?)),
         Shape::Ellipsoid { radii } => {
             Box::new(Ellipsoid::new(all_positive("ellipsoid", "half axis", *radii)?))

@@ -4,22 +4,21 @@
 //! surfaces choose. A picture of the surroundings is a light of its own: directions are chosen by how
 //! bright its cells are, each the solid angle of one texel.
 
-use std::marker::PhantomData;
-
 use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
-use senca_scene::{Background, Scene};
+use senca_scene::{Background, Environment, Scene};
 
 /// What is around the scene.
 #[derive(Debug)]
 pub(super) struct Sky<'s> {
     background: Background,
-    scene: PhantomData<&'s Scene>,
+    environment: Option<Environment<'s>>,
 }
 
 impl<'s> Sky<'s> {
     pub(super) fn new(scene: &'s Scene) -> Self {
-        Self { background: scene.background, scene: PhantomData }
+        let background = scene.background;
+        Self { background, environment: Environment::of_background(scene, background) }
     }
 
     /// Light from a direction (unit): a gradient runs from straight down to straight up.
@@ -28,6 +27,9 @@ impl<'s> Sky<'s> {
             Background::None => LinearRgb::BLACK,
             Background::Color(color) => color,
             Background::Gradient { bottom, top } => bottom.lerp(top, 0.5 + 0.5 * direction.y as f32),
+            Background::Environment { .. } => {
+                self.environment.as_ref().map_or(LinearRgb::BLACK, |e| e.color(direction.as_vec3()))
+            }
         }
     }
 

@@ -47,7 +47,7 @@ pub struct PathTracer<'w> {
     lights: Lights<'w>,
     fog: Option<Fog>,
     /// What the eye sees where nothing is.
-    background: Sky,
+    background: Sky<'w>,
     rays: PrimaryRays,
     settings: PathSettings,
     /// The bodies that the eye of a central view is in.
@@ -116,7 +116,7 @@ impl<'w> PathTracer<'w> {
             world,
             lights: Lights::new(world, &materials),
             fog: world.scene().fog,
-            background: Sky::new(background, size[1]),
+            background: Sky::new(world.scene(), background, size[1]),
             rays: PrimaryRays::new(view, size[0], size[1]),
             settings: *settings,
             media_at_eye: None,
@@ -156,7 +156,7 @@ impl<'w> PathTracer<'w> {
         let path = self.trace(&ray, &place.sampler, work);
         let mut light = path.light;
         if path.missed {
-            match self.background.in_row(place.row) {
+            match self.background.in_row(place.row, ray.direction) {
                 Some(color) => light += path.throughput * color,
                 None => return [0.0; 4],
             }

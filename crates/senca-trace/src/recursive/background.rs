@@ -2,28 +2,32 @@
 
 use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
-use senca_scene::Background;
+use senca_scene::{Background, Environment, Scene};
 
 /// What is seen where nothing is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sky {
+pub(crate) struct Sky<'s> {
     background: Background,
+    environment: Option<Environment<'s>>,
     last_row: u32,
 }
 
-impl Sky {
-    /// Of a picture of `height` rows.
-    pub(crate) fn new(background: Background, height: u32) -> Self {
-        Self { background, last_row: height.saturating_sub(1).max(1) }
+impl<'s> Sky<'s> {
+    /// Of a picture of `height` rows of `scene`.
+    pub(crate) fn new(scene: &'s Scene, background: Background, height: u32) -> Self {
+        let environment = Environment::of_background(scene, background);
+        Self { background, environment, last_row: height.saturating_sub(1).max(1) }
     }
 
-    /// Colour in a row of the picture; `None` where the picture is transparent.
+    /// Colour in a row of the picture, seen along `direction`; `None` where the picture is
+    /// transparent.
     #[inline]
-    pub(crate) fn in_row(&self, row: u32) -> Option<LinearRgb> {
+    pub(crate) fn in_row(&self, row: u32, direction: DVec3) -> Option<LinearRgb> {
         match self.background {
             Background::None => None,
             Background::Color(color) => Some(color),
             Background::Gradient { bottom, top } => Some(top.lerp(bottom, row as f32 / self.last_row as f32)),
+            Background::Environment { .. } => Some(self.towards(direction)),
         }
     }
 
@@ -35,6 +39,10 @@ impl Sky {
             Background::None => LinearRgb::BLACK,
             Background::Color(color) => color,
             Background::Gradient { bottom, top } => bottom.lerp(top, 0.5 + 0.5 * direction.y as f32),
+            Background::Environment { .. } => {
+                let seen = self.environment.as_ref().map(|e| e.color(direction.as_vec3()));
+                seen.unwrap_or(LinearRgb::BLACK)
+            }
         }
     }
 
@@ -51,13 +59,14 @@ mod tests {
     #[test]
     fn gradients_run_by_row_and_by_direction() {
         let (bottom, top) = (LinearRgb::BLACK, LinearRgb::WHITE);
-        let sky = Sky::new(Background::Gradient { bottom, top }, 11);
-        assert_eq!(sky.in_row(0), Some(top));
-        assert_eq!(sky.in_row(10), Some(bottom));
-        assert_eq!(sky.in_row(5), Some(LinearRgb::splat(0.5)));
+        let scene = Scene::default();
+        let sky = Sky::new(&scene, Background::Gradient { bottom, top }, 11);
+        assert_eq!(sky.in_row(0, DVec3::X), Some(top));
+        assert_eq!(sky.in_row(10, DVec3::X), Some(bottom));
+        assert_eq!(sky.in_row(5, DVec3::X), Some(LinearRgb::splat(0.5)));
         assert_eq!(sky.towards(DVec3::Y), top);
         assert_eq!(sky.towards(DVec3::NEG_Y), bottom);
-        assert_eq!(Sky::new(Background::None, 11).in_row(3), None);
-        assert_eq!(Sky::new(Background::None, 0).towards(DVec3::X), LinearRgb::BLACK);
+        assert_eq!(Sky::new(&scene, Background::None, 11).in_row(3, DVec3::X), None);
+        assert_eq!(Sky::new(&scene, Background::None, 0).towards(DVec3::X), LinearRgb::BLACK);
     }
 }

@@ -208,7 +208,7 @@ impl Tracer<'_> {
     fn leave<R: Recorder>(&self, pending: &Pending, tree: &mut Tree<'_, R>) {
         let straight = pending.open > 0.0;
         let seen = if straight {
-            let color = self.sky.in_row(tree.place.row);
+            let color = self.sky.in_row(tree.place.row, pending.ray.direction);
             tree.sum.alpha += if color.is_some() { pending.open } else { 0.0 };
             color.unwrap_or(LinearRgb::BLACK)
         } else {

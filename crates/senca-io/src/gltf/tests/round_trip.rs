@@ -185,10 +185,7 @@ fn cameras() -> Vec<Camera> {
     let perspective = Projection::Perspective { yfov: 0.7, aspect: Some(1.3), near: Some(0.1), far: None };
     let parallel =
         Projection::Orthographic { height: 3.0, aspect: Some(2.0), near: Some(0.5), far: Some(9.0) };
-    vec![
-        Camera { name: "eye".into(), projection: perspective },
-        Camera { name: String::new(), projection: parallel },
-    ]
+    vec![Camera::new("eye", perspective), Camera::new("", parallel)]
 }
 
 #[test]

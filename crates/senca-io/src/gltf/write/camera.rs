@@ -136,7 +136,7 @@ mod tests {
     }
 
     fn camera(operation: ViewingOperation) -> Camera {
-        Camera { name: String::from("c"), projection: Projection::Operation(operation) }
+        Camera::new("c", Projection::Operation(operation))
     }
 
     /// The straight camera must see every point where the operation sees it.
@@ -145,7 +145,7 @@ mod tests {
         let p = operation(DVec3::new(0.0, 0.0, 5.0));
         for operation in [ViewingOperation::Central(p), ViewingOperation::Parallel(p)] {
             let (node_from_camera, projection) = straight_camera(&camera(operation)).expect("straight");
-            let straight = Camera { name: String::new(), projection };
+            let straight = Camera::new("", projection);
             let straight = straight.view(&node_from_camera, 2.0, &Aabb::EMPTY).expect("a view");
             let asked = operation.view().expect("a view");
             for point in [DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -1.0, 2.0), DVec3::new(1.5, 2.5, 3.2)] {

@@ -357,3 +357,30 @@ fn texts_above_the_limit_are_refused_before_they_are_parsed() {
     let message = error(&text);
     assert!(message.contains("put large meshes into"), "{message}");
 }
+
+#[test]
+fn formulas_show_their_mistake() {
+    let implicit = |rest: &str| format!("[[object]]\nshape = 'implicit'\n{rest}");
+    expect(&implicit("expression = 'x^2 + + )'"), "scene.toml:3:23:", &["column 9", "found \")\""]);
+    expect(&implicit("expression = \"\"\"\nx +\n  q\"\"\""), "scene.toml:5:3:", &["unknown name \"q\""]);
+    expect(&implicit("expression = 3"), "scene.toml:3:14:", &["a string"]);
+    expect(&implicit("min = 1"), "scene.toml:1:", &["expression"]);
+    expect(&implicit("expression = 'x'\nmin = 2"), "scene.toml:4:7:", &["greater than"]);
+}
+
+#[test]
+fn bodies_are_checked() {
+    let csg = |rest: &str| format!("[[object]]\nshape = 'csg'\n{rest}");
+    let bodies = |list: &str| csg(&format!("operation = 'union'\nbodies = [{list}]"));
+    expect(&csg("operation = 'onion'\nbodies = []"), "scene.toml:3:13:", &["did you mean \"union\""]);
+    expect(&csg("operation = 'union'"), "scene.toml:1:", &["bodies"]);
+    expect(&bodies("{ shape = 'sphere' }"), "scene.toml:4:10:", &["two bodies or more"]);
+    let open = "{ shape = 'sphere' }, { shape = 'cylinder', name = 'pipe', capped = false }";
+    expect(&bodies(open), "scene.toml:4:33:", &["cylinder \"pipe\"", "capped = true"]);
+    expect(&bodies("{ shape = 'sphere' }, { shape = 'disc' }"), "scene.toml:4:33:", &["no inside"]);
+    expect(&bodies("{ shape = 'sphere' }, { shape = 'plane' }"), "scene.toml:1:", &["no end"]);
+    expect(&bodies("{ shape = 'sphere' }, { shape = 'sphere', rad = 1 }"), "scene.toml:4:53:", &["radius"]);
+    expect(&bodies("{ shape = 'sphere' }, { radius = 1 }"), "scene.toml:4:33:", &["operation"]);
+    let deep = format!("{}{}", "{ operation = 'union', bodies = [".repeat(40), "]}".repeat(40));
+    assert!(!error(&bodies(&deep)).is_empty());
+}

@@ -7,8 +7,8 @@ use senca_math::glam::{DMat4, DQuat, DVec2, DVec3, Vec2, Vec3};
 use senca_math::view::ViewingOperation;
 use senca_scene::*;
 
-use super::{read_text, scene};
-use crate::toml_scene::{MethodHint, RenderHints, ShadingHint};
+use super::{error, read_text, scene};
+use crate::toml_scene::{AccelerationHint, AntialiasingHint, MethodHint, RenderHints, ShadingHint};
 
 fn close(a: DVec3, b: DVec3) -> bool {
     (a - b).length() < 1e-9
@@ -493,7 +493,7 @@ fn animations_of_one_name_run_together() {
 
 #[test]
 fn render_hints_are_read() {
-    let text = "[render]\nsize = [640, 480]\nmethod = 'trace'\nshading = 'hidden-line'\ncamera = 'c'\nsamples = 16\ntime = 1.5\n[camera]\nname = 'c'";
+    let text = "[render]\nsize = [640, 480]\nmethod = 'trace'\nshading = 'hidden-line'\ncamera = 'c'\nsamples = 16\ntime = 1.5\nmax_depth = 5\naa = 'adaptive'\naccel = 'octree'\n[camera]\nname = 'c'";
     let expected = RenderHints {
         size: Some([640, 480]),
         method: Some(MethodHint::Trace),
@@ -501,6 +501,59 @@ fn render_hints_are_read() {
         camera: Some("c".to_owned()),
         samples: Some(16),
         time: Some(1.5),
+        max_depth: Some(5),
+        aa: Some(AntialiasingHint::Adaptive),
+        accel: Some(AccelerationHint::Octree),
     };
     assert_eq!(read_text(text).expect("reads").render, expected);
+}
+
+#[test]
+fn implicit_surfaces_are_read() {
+    let (of, place) = shape(
+        "shape = 'implicit'\nexpression = 'x^2 + y^2 - 1'\nmin = -2\nmax = [2, 3, 4]\ncapped = false\ncenter = [0, 1, 0]",
+    );
+    let Shape::Implicit(surface) = of else { panic!("not implicit") };
+    assert_eq!(surface.expression.to_string(), "x^2 + y^2 - 1");
+    assert_eq!((surface.bounds.min, surface.bounds.max), (DVec3::splat(-2.0), DVec3::new(2.0, 3.0, 4.0)));
+    assert!(!surface.capped);
+    assert_eq!(place.w_axis.y, 1.0);
+    let Shape::Implicit(plain) = shape("shape = 'implicit'\nexpression = 'z'").0 else {
+        panic!("not implicit")
+    };
+    assert_eq!((plain.bounds.min, plain.bounds.max, plain.capped), (-DVec3::ONE, DVec3::ONE, true));
+}
+
+#[test]
+fn bodies_are_put_together() {
+    let text = "[material.red]\ncolor = 'red'\n[[object]]\nshape = 'csg'\noperation = 'difference'\nbodies = [\n\
+        { shape = 'box', size = 2 },\n\
+        { operation = 'union', material = 'red', translate = [1, 0, 0], bodies = [\n\
+            { shape = 'sphere', radius = 0.5, center = [0, 2, 0] },\n\
+            { shape = 'cylinder', name = 'bore', from = [0, -2, 0], to = [0, 2, 0], material = { color = 'blue' } },\n\
+        ] },\n]";
+    let scene = scene(text);
+    assert_eq!(scene.validate(), Ok(()));
+    let Shape::Csg(csg) = &scene.geometries[0].shape else { panic!("not csg") };
+    let CsgNode::Difference(nodes) = &csg.root else { panic!("not a difference") };
+    assert!(matches!(nodes[1], CsgNode::Union(_)));
+    let leaves = csg.leaves();
+    assert_eq!(leaves.iter().map(|l| l.name.as_str()).collect::<Vec<_>>(), ["", "", "bore"]);
+    assert_eq!(leaves[1].transform.matrix().w_axis.truncate(), DVec3::new(1.0, 2.0, 0.0));
+    assert_eq!(leaves.iter().map(|l| l.material.map(|m| m.0)).collect::<Vec<_>>(), [None, Some(0), Some(1)]);
+}
+
+#[test]
+fn lenses_shutters_and_surroundings_are_read() {
+    let camera = |text: &str| scene(&format!("[camera]\n{text}")).cameras[0].clone();
+    assert_eq!((camera("fov = 40").lens, camera("fov = 40").shutter), (None, None));
+    let lens = camera("lens = { radius = 0.1, focus = 5 }").lens.expect("a lens");
+    assert_eq!((lens.radius, lens.focus_distance), (0.1, 5.0));
+    assert_eq!(camera("shutter = 0.5").shutter, Some([0.0, 0.5]));
+    assert_eq!(camera("shutter = [-0.25, 0.25]").shutter, Some([-0.25, 0.25]));
+    let glass =
+        "[material.g]\ntransmission = 0.9\nmirror = 1\nfresnel = true\nabsorption = [0, 1, 2]\nior = 1.3";
+    let material = scene(glass).materials[0].clone();
+    assert!(material.fresnel && material.absorption.b == 2.0 && material.absorption.r == 0.0);
+    assert!(error("background = { environment = 'sky.exr' }").contains("sky.exr"));
 }
