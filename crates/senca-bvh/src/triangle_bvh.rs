@@ -340,7 +340,12 @@ impl<F: Found, C: Count> Visitor for Search<'_, F, C> {
                 }
             }
         }
-        hits.unsure != 0 && self.unsure(ray.prepared, block, hits.unsure, t_max)
+        if hits.unsure == 0 {
+            return false;
+        }
+        let (end, t) = self.unsure(ray.prepared, block, hits.unsure, *t_max);
+        *t_max = t;
+        end
     }
 
     #[inline(always)]
@@ -350,25 +355,21 @@ impl<F: Found, C: Count> Visitor for Search<'_, F, C> {
 }
 
 impl<F: Found, C> Search<'_, F, C> {
-    /// Tests some triangles of a block one by one.
+    /// Tests some triangles of a block one by one. Whether that ends the search, and the new `t_max`.
     #[cold]
     #[inline(never)]
-    fn unsure(&mut self, ray: &PreparedRay, block: &Block, mut mask: u32, t_max: &mut f32) -> bool {
+    fn unsure(&mut self, ray: &PreparedRay, block: &Block, mut mask: u32, mut t_max: f32) -> (bool, f32) {
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize % LANES;
             mask &= mask - 1;
-            if let Some((t, u, v)) = intersect(ray, block.corners(lane))
-                && t <= *t_max
-                && self.found.hit(
-                    t,
-                    TriangleHit { t: t * ray.t_unit, u, v, triangle: block.triangles[lane] },
-                    t_max,
-                )
-            {
-                return true;
+            if let Some((t, u, v)) = intersect(ray, block.corners(lane)).filter(|hit| hit.0 <= t_max) {
+                let hit = TriangleHit { t: t * ray.t_unit, u, v, triangle: block.triangles[lane] };
+                if self.found.hit(t, hit, &mut t_max) {
+                    return (true, t_max);
+                }
             }
         }
-        false
+        (false, t_max)
     }
 }
 
