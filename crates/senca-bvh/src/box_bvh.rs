@@ -2,12 +2,16 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
+use senca_math::glam::Vec3;
 
 use crate::build::{Item, build};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
 use crate::traverse::{LaneRay, MAX_DEPTH, SHALLOW, Visitor, stack_size, walk};
 use crate::{Aabb32, BuildError, BuildSettings, Ray32, TraversalCounts};
+
+/// Coordinates beyond are taken as infinite, so that surfaces can be computed.
+const END: f32 = 1e15;
 
 /// A hierarchy over boxes, whose contents the caller tests: instances, spheres, patches.
 ///
@@ -40,14 +44,20 @@ impl BoxBvh {
             .enumerate()
             .with_min_len(1 << 12)
             .filter(|(_, bounds)| !bounds.is_empty())
-            .map(|(index, bounds)| Item::new(index as u32, bounds.min, bounds.max))
+            .map(|(index, bounds)| {
+                Item::new(index as u32, bounds.min.max(Vec3::splat(-END)), bounds.max.min(Vec3::splat(END)))
+            })
             .collect();
-        let tree = build(items, 1);
+        let mut tree = build(items, 1, settings.level);
+        tree.nodes.par_iter_mut().with_min_len(1 << 12).for_each(|node| node.open(END));
         let items = tree.leaves.iter().map(|leaf| tree.items[leaf.0 as usize]).collect();
         Ok(Self {
             nodes: tree.nodes,
             items,
-            bounds: tree.extent.as_box(),
+            bounds: boxes
+                .iter()
+                .filter(|bounds| !bounds.is_empty())
+                .fold(Aabb32::EMPTY, |all, bounds| all.union(*bounds)),
             depth: tree.depth,
             level: settings.level,
         })

@@ -42,6 +42,21 @@ impl Node {
     }
 }
 
+impl Node {
+    /// Makes boxes that end at `end` or beyond endless there.
+    pub(crate) fn open(&mut self, end: f32) {
+        for (row, bounds) in self.bounds.iter_mut().enumerate() {
+            for bound in bounds {
+                if row % 2 == 0 && *bound <= -end {
+                    *bound = f32::NEG_INFINITY;
+                } else if row % 2 == 1 && *bound >= end {
+                    *bound = f32::INFINITY;
+                }
+            }
+        }
+    }
+}
+
 /// A reference to a node or a leaf. A leaf is a block of up to eight items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Child(pub(crate) u32);

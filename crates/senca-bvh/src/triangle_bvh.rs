@@ -60,7 +60,7 @@ impl TriangleBvh {
         if triangles.len() > Child::MAX_LEAVES {
             return Err(BuildError::TooMany { count: triangles.len(), limit: Child::MAX_LEAVES });
         }
-        let tree = build(items(points, triangles)?, LANES);
+        let tree = build(items(points, triangles)?, LANES, settings.level);
         let corners = |triangle: u32| triangles[triangle as usize].map(|index| points[index as usize]);
         let blocks = tree
             .leaves
@@ -383,17 +383,17 @@ fn items(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Item>, BuildErro
     if let Some(error) = wrong {
         return Err(error);
     }
-    let mut items: Vec<(bool, Item)> = Vec::new();
-    triangles
-        .par_iter()
-        .enumerate()
-        .with_min_len(1 << 12)
-        .map(|(triangle, indices)| {
-            let [a, b, c] = indices.map(|index| points[index as usize]);
-            (can_be_met([a, b, c]), Item::new(triangle as u32, a.min(b).min(c), a.max(b).max(c)))
-        })
-        .collect_into_vec(&mut items);
-    Ok(items.into_iter().filter(|item| item.0).map(|item| item.1).collect())
+    let met = |indices: &[u32; 3]| can_be_met(indices.map(|index| points[index as usize]));
+    let item = |(triangle, indices): (usize, &[u32; 3])| {
+        let [a, b, c] = indices.map(|index| points[index as usize]);
+        Item::new(triangle as u32, a.min(b).min(c), a.max(b).max(c))
+    };
+    let numbered = triangles.par_iter().enumerate().with_min_len(1 << 12);
+    if triangles.par_iter().with_min_len(1 << 12).all(met) {
+        Ok(numbered.map(item).collect())
+    } else {
+        Ok(numbered.filter(|triangle| met(triangle.1)).map(item).collect())
+    }
 }
 
 /// Whether a triangle is finite and has an area.
