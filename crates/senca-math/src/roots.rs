@@ -17,7 +17,9 @@ pub mod bernstein;
 pub mod closed_form;
 pub mod sturm;
 
-pub use bernstein::{bernstein_from_power, bernstein_roots, polynomial_roots_between, restricted_to};
+pub use bernstein::{
+    bernstein_from_power, bernstein_roots, bernstein_roots_of_any, polynomial_roots_between, restrict_to,
+};
 pub use closed_form::{cubic_roots_closed_form, quartic_roots_closed_form, roots_closed_form};
 pub use sturm::sturm_roots;
 

@@ -16,64 +16,65 @@
 /// Halvings after which an interval is not looked into any further.
 const MAX_DEPTH: u32 = 52;
 
+/// Most coefficients of [`bernstein_roots_of_any`]: degree 32.
+pub const MAX_COEFFICIENTS: usize = 33;
+
 /// Calls `found` with the roots in [0, 1] of the polynomial with the given Bernstein coefficients,
-/// ascending.
+/// ascending. For low degrees known in advance; see [`bernstein_roots_of_any`].
 pub fn bernstein_roots<const N: usize>(coefficients: &[f64; N], found: &mut impl FnMut(f64)) {
     descend(coefficients, 0.0, 0, found);
 }
 
-/// Bernstein coefficients on [0, 1] of the polynomial with the given power coefficients, lowest
-/// power first. Zeros at the end raise the degree of the form without harm.
-#[must_use]
-pub fn bernstein_from_power<const N: usize>(mut power: [f64; N]) -> [f64; N] {
-    let mut binomial = 1.0;
-    for (i, a) in power.iter_mut().enumerate() {
-        *a /= binomial;
-        binomial *= (N - 1 - i) as f64 / (i + 1) as f64;
+/// The same for any degree up to 32. Of more coefficients than [`MAX_COEFFICIENTS`] none are found.
+pub fn bernstein_roots_of_any(coefficients: &[f64], found: &mut impl FnMut(f64)) {
+    if coefficients.len() <= MAX_COEFFICIENTS {
+        descend_any(coefficients, 0.0, 0, found);
     }
-    for level in 1..N {
-        for i in (level..N).rev() {
+}
+
+/// Turns power coefficients, lowest power first, into Bernstein coefficients on [0, 1]. Zeros at the
+/// end raise the degree of the form without harm.
+#[inline]
+pub fn bernstein_from_power(power: &mut [f64]) {
+    let mut binomial = 1.0;
+    for i in 0..power.len() {
+        power[i] /= binomial;
+        binomial *= (power.len() - 1 - i) as f64 / (i + 1) as f64;
+    }
+    for level in 1..power.len() {
+        for i in (level..power.len()).rev() {
             power[i] += power[i - 1];
         }
     }
-    power
 }
 
-/// Power coefficients, lowest first, of `p(low + (high - low) s)` as a polynomial in s.
-#[must_use]
-pub fn restricted_to<const N: usize>(mut power: [f64; N], low: f64, high: f64) -> [f64; N] {
-    for level in 0..N {
-        for i in (level..N - 1).rev() {
+/// Turns the coefficients of p, lowest power first, into those of `p(low + (high - low) s)` in s.
+#[inline]
+pub fn restrict_to(power: &mut [f64], low: f64, high: f64) {
+    for level in 0..power.len() {
+        for i in (level..power.len() - 1).rev() {
             power[i] += low * power[i + 1];
         }
     }
     let mut scale = 1.0;
-    for a in &mut power {
+    for a in power {
         *a *= scale;
         scale *= high - low;
     }
-    power
 }
 
 /// Roots between `low` and `high`, both finite, of a polynomial of any degree; coefficients lowest
 /// power first. Ascending. Where the polynomial only touches zero there are none, or two nearly the same.
 #[must_use]
 pub fn polynomial_roots_between(power: &[f64], low: f64, high: f64) -> Vec<f64> {
-    match power.len() {
-        0..=5 => roots_of_size::<5>(power, low, high),
-        6..=9 => roots_of_size::<9>(power, low, high),
-        10..=17 => roots_of_size::<17>(power, low, high),
-        18..=33 => roots_of_size::<33>(power, low, high),
-        _ => super::sturm::sturm_roots(power, low, high),
+    if power.len() > MAX_COEFFICIENTS {
+        return super::sturm::sturm_roots(power, low, high);
     }
-}
-
-fn roots_of_size<const N: usize>(power: &[f64], low: f64, high: f64) -> Vec<f64> {
-    let mut padded = [0.0; N];
-    padded[..power.len()].copy_from_slice(power);
+    let mut form = power.to_vec();
+    restrict_to(&mut form, low, high);
+    bernstein_from_power(&mut form);
     let mut roots = Vec::new();
-    let form = bernstein_from_power(restricted_to(padded, low, high));
-    bernstein_roots(&form, &mut |s| roots.push(low + s * (high - low)));
+    bernstein_roots_of_any(&form, &mut |s| roots.push(low + s * (high - low)));
     roots
 }
 
@@ -81,66 +82,104 @@ fn negative(x: f64) -> bool {
     x < 0.0
 }
 
-fn sign_changes<const N: usize>(b: &[f64; N]) -> usize {
-    b.windows(2).filter(|pair| negative(pair[0]) != negative(pair[1])).count()
+/// What the signs of the coefficients say of a piece.
+enum Signs {
+    NoRoot,
+    OneRoot,
+    /// Too short to be looked into; whether the sign changes.
+    Short(bool),
+    Unknown,
+}
+
+#[inline]
+fn signs(b: &[f64], depth: u32) -> Signs {
+    match b.windows(2).filter(|pair| negative(pair[0]) != negative(pair[1])).count() {
+        0 => Signs::NoRoot,
+        1 => Signs::OneRoot,
+        _ if depth == MAX_DEPTH => Signs::Short(negative(b[0]) != negative(b[b.len() - 1])),
+        _ => Signs::Unknown,
+    }
+}
+
+/// 2^-depth.
+fn length_at(depth: u32) -> f64 {
+    f64::from_bits((1023 - u64::from(depth)) << 52)
 }
 
 /// Roots of a piece that begins at `low` and is `2^-depth` long.
 fn descend<const N: usize>(b: &[f64; N], low: f64, depth: u32, found: &mut impl FnMut(f64)) {
-    let changes = sign_changes(b);
-    if changes == 0 {
-        return;
-    }
-    let length = f64::from_bits((1023 - u64::from(depth)) << 52);
-    if changes == 1 {
-        return found(low + length * single_root(b));
-    }
-    if depth == MAX_DEPTH {
-        if negative(b[0]) != negative(b[N - 1]) {
-            found(low);
+    match signs(b, depth) {
+        Signs::NoRoot | Signs::Short(false) => {}
+        Signs::Short(true) => found(low),
+        Signs::OneRoot => found(low + length_at(depth) * single_root(b, &mut [0.0; N])),
+        Signs::Unknown => {
+            let (mut left, mut right) = ([0.0; N], *b);
+            halve(&mut left, &mut right);
+            descend(&left, low, depth + 1, found);
+            descend(&right, low + length_at(depth + 1), depth + 1, found);
         }
-        return;
     }
-    let (left, right) = halves(b);
-    descend(&left, low, depth + 1, found);
-    descend(&right, low + 0.5 * length, depth + 1, found);
 }
 
-/// Bernstein coefficients over the two halves.
-fn halves<const N: usize>(b: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut left, mut right) = (*b, *b);
-    for (level, first) in left.iter_mut().enumerate().skip(1) {
-        for i in 0..N - level {
-            right[i] = 0.5 * (right[i] + right[i + 1]);
+/// The same for a degree that is not known in advance.
+fn descend_any(b: &[f64], low: f64, depth: u32, found: &mut impl FnMut(f64)) {
+    match signs(b, depth) {
+        Signs::NoRoot | Signs::Short(false) => {}
+        Signs::Short(true) => found(low),
+        Signs::OneRoot => {
+            found(low + length_at(depth) * single_root(b, &mut [0.0; MAX_COEFFICIENTS][..b.len()]));
+        }
+        Signs::Unknown => {
+            let (mut left, mut right) = ([0.0; MAX_COEFFICIENTS], [0.0; MAX_COEFFICIENTS]);
+            let (left, right) = (&mut left[..b.len()], &mut right[..b.len()]);
+            right.copy_from_slice(b);
+            halve(left, right);
+            descend_any(left, low, depth + 1, found);
+            descend_any(right, low + length_at(depth + 1), depth + 1, found);
+        }
+    }
+}
+
+/// Takes the coefficients of a piece in `right` apart into those over its two halves.
+#[inline]
+fn halve(left: &mut [f64], right: &mut [f64]) {
+    let count = right.len();
+    for (level, first) in left.iter_mut().enumerate() {
+        if level > 0 {
+            for i in 0..count - level {
+                right[i] = 0.5 * (right[i] + right[i + 1]);
+            }
         }
         *first = right[0];
     }
-    (left, right)
 }
 
-/// Value and derivative at s.
-fn value_and_slope<const N: usize>(b: &[f64; N], s: f64) -> (f64, f64) {
-    let mut row = *b;
-    for level in 1..N - 1 {
-        for i in 0..N - level {
+/// Value and derivative at s; `row` is room for as many numbers.
+#[inline]
+fn value_and_slope(b: &[f64], row: &mut [f64], s: f64) -> (f64, f64) {
+    row.copy_from_slice(b);
+    let count = row.len();
+    for level in 1..count - 1 {
+        for i in 0..count - level {
             row[i] += s * (row[i + 1] - row[i]);
         }
     }
     let step = row[1] - row[0];
-    (row[0] + s * step, (N - 1) as f64 * step)
+    (row[0] + s * step, (count - 1) as f64 * step)
 }
 
 /// The root of a polynomial with one change of sign.
-fn single_root<const N: usize>(b: &[f64; N]) -> f64 {
+#[inline]
+fn single_root(b: &[f64], row: &mut [f64]) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let starts_negative = negative(b[0]);
-    let mut s = b[0] / (b[0] - b[N - 1]);
+    let mut s = b[0] / (b[0] - b[b.len() - 1]);
     if !(s > 0.0 && s < 1.0) {
         s = 0.5;
     }
     // Bisection alone would end within 60 steps; with Newton's steps a handful do.
     for _ in 0..64 {
-        let (value, slope) = value_and_slope(b, s);
+        let (value, slope) = value_and_slope(b, row, s);
         if negative(value) == starts_negative {
             low = s;
         } else {
@@ -178,10 +217,13 @@ mod tests {
     #[test]
     fn forms_agree() {
         // s^2: coefficients 0, 0, 1 of degree two, 0, 0, 1/3, 1 of degree three.
-        assert_eq!(bernstein_from_power([0.0, 0.0, 1.0]), [0.0, 0.0, 1.0]);
-        assert_eq!(bernstein_from_power([0.0, 0.0, 1.0, 0.0]), [0.0, 0.0, 1.0 / 3.0, 1.0]);
+        let (mut three, mut four) = ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]);
+        bernstein_from_power(&mut three);
+        bernstein_from_power(&mut four);
+        assert_eq!((three, four), ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0 / 3.0, 1.0]));
         // x^2 on [1, 3]: (1 + 2 s)^2.
-        assert_eq!(restricted_to([0.0, 0.0, 1.0], 1.0, 3.0), [1.0, 4.0, 4.0]);
+        restrict_to(&mut three, 1.0, 3.0);
+        assert_eq!(three, [1.0, 4.0, 4.0]);
     }
 
     #[test]
@@ -207,6 +249,14 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn known_and_unknown_degrees_give_the_same(b in prop::array::uniform7(-1.0..1.0f64)) {
+            let (mut known, mut any) = (Vec::new(), Vec::new());
+            bernstein_roots(&b, &mut |s| known.push(s));
+            bernstein_roots_of_any(&b, &mut |s| any.push(s));
+            prop_assert_eq!(known, any);
+        }
+
         #[test]
         fn well_separated_roots_come_back(gaps in prop::collection::vec(0.1..0.5f64, 1..9), scale in -5.0..5.0f64) {
             prop_assume!(scale.abs() > 0.01);

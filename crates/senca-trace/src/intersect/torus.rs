@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3};
-use senca_math::roots::{bernstein_from_power, bernstein_roots, restricted_to};
+use senca_math::roots::{bernstein_from_power, bernstein_roots, restrict_to};
 
 use super::analytic::{Analytic, Chart, slab, turn_from_back};
 use crate::{Crossing, Ray, SurfacePoint};
@@ -75,8 +75,10 @@ impl Analytic for Torus {
             return;
         }
 
-        let quartic = restricted_to(unit_torus.quartic(nearest, unit), low, high);
-        bernstein_roots(&bernstein_from_power(quartic), &mut |s| {
+        let mut quartic = unit_torus.quartic(nearest, unit);
+        restrict_to(&mut quartic, low, high);
+        bernstein_from_power(&mut quartic);
+        bernstein_roots(&quartic, &mut |s| {
             let t = (middle + size * (low + s * (high - low))) / length;
             meet(t, 0, DVec2::ZERO);
         });

@@ -1,8 +1,10 @@
 //! Roots along a ray from the coefficients of a polynomial.
 
 use senca_math::Expression;
+use senca_math::roots::bernstein::MAX_COEFFICIENTS;
 use senca_math::roots::{
-    bernstein_from_power, bernstein_roots, restricted_to, roots_closed_form, sturm_roots,
+    bernstein_from_power, bernstein_roots, bernstein_roots_of_any, restrict_to, roots_closed_form,
+    sturm_roots,
 };
 
 use super::RootMethod;
@@ -32,17 +34,26 @@ pub(super) fn each_root(
         (RootMethod::ClosedForm, 0..=5) => by_closed_form(power, |s| polynomial.value(s), &mut place),
         (_, 0..=3) => by_descartes::<3>(power, &mut place),
         (_, 4..=5) => by_descartes::<5>(power, &mut place),
-        (_, 6..=9) => by_descartes::<9>(power, &mut place),
-        (_, 10..=17) => by_descartes::<17>(power, &mut place),
-        _ => by_descartes::<33>(power, &mut place),
+        _ => {
+            let mut form = [0.0; MAX_COEFFICIENTS];
+            let form = &mut form[..power.len().min(MAX_COEFFICIENTS)];
+            to_form(power, form);
+            bernstein_roots_of_any(form, &mut |s| place(2.0 * s - 1.0));
+            form[0] < 0.0
+        }
     }
 }
 
+/// Bernstein coefficients over [-1, 1] from power coefficients, of which there may be fewer.
+fn to_form(power: &[f64], form: &mut [f64]) {
+    form.iter_mut().zip(power).for_each(|(to, from)| *to = *from);
+    restrict_to(form, -1.0, 1.0);
+    bernstein_from_power(form);
+}
+
 fn by_descartes<const N: usize>(power: &[f64], found: &mut impl FnMut(f64)) -> bool {
-    let mut padded = [0.0; N];
-    let count = power.len().min(N);
-    padded[..count].copy_from_slice(&power[..count]);
-    let form = bernstein_from_power(restricted_to(padded, -1.0, 1.0));
+    let mut form = [0.0; N];
+    to_form(power, &mut form);
     bernstein_roots(&form, &mut |s| found(2.0 * s - 1.0));
     form[0] < 0.0
 }
