@@ -102,11 +102,18 @@ impl Piece {
     }
 
     /// Length between two parameters, by Gauss' rule of three nodes.
+    //
+    // As a sum of three terms instead of a loop this brings rustc 1.95 down in optimized builds with
+    // thin LTO (SIGSEGV in LLVM's register coalescer).
     fn length_between(&self, a: f64, b: f64) -> f64 {
+        const NODES: [(f64, f64); 3] =
+            [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-        let speed = |x: f64| self.slope(middle + half * x).length();
-        let node = 0.6f64.sqrt();
-        half * (5.0 * speed(-node) + 8.0 * speed(0.0) + 5.0 * speed(node)) / 9.0
+        let mut sum = 0.0;
+        for (node, weight) in NODES {
+            sum += weight * self.slope(middle + half * node).length();
+        }
+        half * sum
     }
 }
 
