@@ -6,7 +6,9 @@
 //! bounds on how much the derivatives differ over the cell from those at the centre, a ray whose slopes in
 //! the frame are s meets the cell at most once, and not farther than `spread + tilt |s|` from there, as
 //! long as that is below 1 (Krawczyk 1969, applied to rays). So most cells are rejected, rightly, by
-//! intersecting one plane, and in the others Newton's method starts next to the only root.
+//! intersecting one plane, and in the others Newton's method starts next to the only root. The bounds are
+//! taken over the cell and a margin around it: when Newton's method ends in the margin, then there is no
+//! root in the cell.
 
 use senca_math::glam::{BVec3, DMat3, DVec3, DVec4, Mat3, Vec2, Vec3};
 
@@ -21,10 +23,13 @@ pub(super) struct Cell {
     pub local_from_object: Mat3,
     /// Its point in the middle.
     pub center: Vec3,
-    /// How much the derivatives differ from those at the centre, in the plane ...
+    /// How much the derivatives differ from those at the centre over the cell and its margin, in the plane
+    /// ...
     pub spread: Vec2,
     /// ... and out of it. Infinite when nothing is known.
     pub tilt: f32,
+    /// Share of both that the cell itself reaches.
+    pub inner: f32,
     /// How far the surface gets from the centre, in the frame.
     pub extent: Vec3,
     /// Patch it belongs to.
@@ -32,6 +37,12 @@ pub(super) struct Cell {
     /// Middle and half size of its rectangle: multiples of powers of 1/2, and so exact.
     pub uv: [f32; 4],
 }
+
+/// Half size of a cell with its margin; the cell's is 1.
+const OUTER: f64 = 1.5;
+
+/// Width of the margin, per half size of a cell, less what rounding takes.
+pub(super) const MARGIN: f64 = OUTER - 1.001;
 
 /// Error of a place in normalized space in single precision: coordinates and steps of up to 2.
 const PLACE_ERROR: f64 = 1e-6;
@@ -47,7 +58,7 @@ pub(super) struct Survey {
     pub high: DVec3,
     /// Which direction to divide.
     pub axis: Axis,
-    /// Largest of the frame's bounds; infinite without.
+    /// How far from flat; infinite without a frame.
     pub error: f64,
 }
 
@@ -58,6 +69,18 @@ pub(super) struct Frame {
     /// Bounds on the change of the derivatives, summed over both: x, y, z in the frame.
     change: DVec3,
     extent: DVec3,
+    /// The piece in its frame, the centre at the origin, as a quotient q / w with w = 1 there.
+    local: Net<DVec4>,
+}
+
+impl Frame {
+    /// How far a hit may be from where a ray under 45 degrees meets the plane.
+    fn error(&self) -> f64 {
+        let lengths = self.local_from_object.inverse();
+        let tilt = self.change.z * lengths.z_axis.length();
+        let along = |change: f64, length: f64| change + tilt / length;
+        along(self.change.x, lengths.x_axis.length()).max(along(self.change.y, lengths.y_axis.length()))
+    }
 }
 
 /// Interval per coordinate.
@@ -87,7 +110,7 @@ pub(super) fn survey(net: &Net<DVec4>, is_rational: bool) -> Survey {
     let (low, high) =
         places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let frame = frame(net, is_rational);
-    let error = frame.as_ref().map_or(f64::INFINITY, |f| f.change.max_element());
+    let error = frame.as_ref().map_or(f64::INFINITY, Frame::error);
     Survey { frame, low, high, axis: longer_axis(net), error }
 }
 
@@ -117,24 +140,35 @@ fn frame(net: &Net<DVec4>, is_rational: bool) -> Option<Frame> {
     if !entries.iter().all(|x| x.abs() < 1e12) {
         return None;
     }
-    // The piece in its frame, centre at the origin, as a quotient q / w with w = 1 at the centre.
     let weight = homogeneous.value.w;
     let local = net.map(|p| {
         let offset = p.truncate() - jet.value * p.w;
         (local_from_object * offset / weight).extend(p.w / weight)
     });
+    let (change, extent) = bounds(&local, 1.0, is_rational);
+    Some(Frame { local_from_object, center: jet.value, change, extent, local })
+}
+
+/// Change of the derivatives, per half cell, and extent of a net that covers a square of half size `half`.
+fn bounds(local: &Net<DVec4>, half: f64, is_rational: bool) -> (DVec3, DVec3) {
     let place = Range::of(local.points().iter().map(|p| (p.truncate() / p.w).extend(p.w)));
-    let change = change(&local, Axis::U, DVec3::X, &place, is_rational)
-        + change(&local, Axis::V, DVec3::Y, &place, is_rational);
-    let extent = place.low.abs().max(place.high.abs()).truncate();
-    Some(Frame { local_from_object, center: jet.value, change, extent })
+    let change = change(local, Axis::U, 0.5 / half, DVec3::X, &place, is_rational)
+        + change(local, Axis::V, 0.5 / half, DVec3::Y, &place, is_rational);
+    (change, place.low.abs().max(place.high.abs()).truncate())
 }
 
 /// How much the derivative along an axis, per half cell, differs from `unit` at most.
 ///
 /// For s = q / w it is (q' - s w') / w; each part keeps within the range of its control points.
-fn change(local: &Net<DVec4>, axis: Axis, unit: DVec3, place: &Range<DVec4>, is_rational: bool) -> DVec3 {
-    let slope = Range::of(local.derivative(axis).map(|d| 0.5 * d));
+fn change(
+    local: &Net<DVec4>,
+    axis: Axis,
+    per_half: f64,
+    unit: DVec3,
+    place: &Range<DVec4>,
+    is_rational: bool,
+) -> DVec3 {
+    let slope = Range::of(local.derivative(axis).map(|d| per_half * d));
     let (mut low, mut high) = (slope.low.truncate(), slope.high.truncate());
     if is_rational {
         let places = Range { low: place.low.truncate(), high: place.high.truncate() };
@@ -146,9 +180,17 @@ fn change(local: &Net<DVec4>, axis: Axis, unit: DVec3, place: &Range<DVec4>, is_
     (low - unit).abs().max((high - unit).abs())
 }
 
+/// Change of the derivatives over a cell and its margin.
+fn outer_change(local: &Net<DVec4>, is_rational: bool) -> DVec3 {
+    let range = [0.5 - 0.5 * OUTER, 0.5 + 0.5 * OUTER];
+    let net = local.clone().extended(Axis::U, range).extended(Axis::V, range);
+    let has_weight = net.points().iter().all(|p| p.w > 0.0);
+    if has_weight { bounds(&net, OUTER, is_rational).0 } else { DVec3::INFINITY }
+}
+
 impl Cell {
     /// The cell of a surveyed piece. Bounds are widened by what single precision loses.
-    pub(super) fn new(patch: u32, domain: &Domain, survey: &Survey) -> Self {
+    pub(super) fn new(patch: u32, domain: &Domain, survey: &Survey, is_rational: bool) -> Self {
         let (center, half) = (domain.center(), domain.half());
         let uv = [center.x, center.y, half.x, half.y].map(|x| x as f32);
         let Some(frame) = &survey.frame else {
@@ -157,6 +199,7 @@ impl Cell {
                 center: Vec3::ZERO,
                 spread: Vec2::ZERO,
                 tilt: f32::INFINITY,
+                inner: 1.0,
                 extent: Vec3::INFINITY,
                 patch,
                 uv,
@@ -165,12 +208,16 @@ impl Cell {
         let rows = frame.local_from_object.transpose();
         let stretch = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.abs().element_sum());
         let loss = DVec3::from_array(stretch) * (2.0 * PLACE_ERROR) + 1e-5;
-        let change = (frame.change + loss).as_vec3();
+        let outer = outer_change(&frame.local, is_rational) + loss;
+        // Nothing is certain where weights vanish in the margin.
+        let outer = if outer.is_finite() { outer } else { DVec3::splat(1e9) };
+        let change = outer.as_vec3();
         Self {
             local_from_object: frame.local_from_object.as_mat3(),
             center: frame.center.as_vec3(),
             spread: change.truncate(),
             tilt: change.z,
+            inner: ((frame.change + loss) / outer).max_element().min(1.0) as f32,
             extent: (frame.extent + loss).as_vec3(),
             patch,
             uv,
@@ -194,15 +241,11 @@ impl Cell {
         let reach = self.spread + self.tilt * slope.abs();
         // Not a number when the ray runs along the plane.
         let most = reach.max_element();
-        let is_one_to_one = most < 0.9;
+        let is_one_to_one = most < 0.95;
         if !is_one_to_one {
             return self.meets_steeply(o, d);
         }
-        if (x.abs() - reach).max_element() > 1.0 {
-            Meeting::Never
-        } else {
-            Meeting::Once { near: x, is_sure: most < 1.0 / 3.0 }
-        }
+        if (x.abs() - self.inner * reach).max_element() > 1.0 { Meeting::Never } else { Meeting::Once(x) }
     }
 
     /// Whether a ray along the surface can meet the cell at all: the box in its frame.
@@ -228,8 +271,8 @@ impl Cell {
 pub(super) enum Meeting {
     /// The ray does not meet the cell.
     Never,
-    /// It meets the cell at most once, near here. When this is sure, Newton's method finds the place.
-    Once { near: Vec2, is_sure: bool },
+    /// It meets the cell with its margin at most once, near here if at all in the cell.
+    Once(Vec2),
     /// Anything may be.
     Unknown,
 }

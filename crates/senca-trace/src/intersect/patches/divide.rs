@@ -10,15 +10,16 @@ use super::net::Net;
 use super::patch::Patch;
 use super::roots::Domain;
 
-/// Pieces with bounds below this are flat enough: Newton's method then needs two or three steps, and all
-/// but rays within about this angle of the surface are settled by it.
-const FLAT: f64 = 0.25;
+/// Pieces are flat enough when hits are within this share of half their size of where a ray under 45
+/// degrees meets their plane: Newton's method then needs two or three steps, and few rays run so much along
+/// the surface that they need more than that.
+const FLAT: f64 = 0.2;
 
 /// Pieces smaller than this share of their patch are not divided further, however crooked they are.
 const SMALLEST: f64 = 1.0 / 128.0;
 
 /// Most cells of one patch.
-pub(super) const MOST_CELLS: usize = 1024;
+pub(super) const MOST_CELLS: usize = 512;
 
 /// A binary tree of boxes; the children of an inner node come after it.
 #[derive(Clone, Debug, Default)]
@@ -113,7 +114,7 @@ pub(super) fn divide(number: u32, patch: &Patch, most: usize) -> (Vec<Cell>, Bin
         let is_done = piece.survey.error <= FLAT || size <= smallest || cells.len() + open.len() + 2 > most;
         if is_done {
             tree.nodes[piece.node as usize].kind = NodeKind::Leaf(cells.len() as u32);
-            cells.push(Cell::new(number, &piece.domain, &piece.survey));
+            cells.push(Cell::new(number, &piece.domain, &piece.survey, patch.is_rational));
             continue;
         }
         let axis = piece.survey.axis;

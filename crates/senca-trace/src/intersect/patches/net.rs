@@ -96,6 +96,11 @@ impl<T: ControlPoint> Net<T> {
         if high < 1.0 { upper.below(axis, (high - low) / (1.0 - low)) } else { upper }
     }
 
+    /// The surface over `[low, high]`, which reach out of [0, 1] on both sides.
+    pub(super) fn extended(self, axis: Axis, [low, high]: [f64; 2]) -> Self {
+        self.below(axis, high).above(axis, low / high)
+    }
+
     /// Control points of the derivative along `axis`.
     pub(super) fn derivative(&self, axis: Axis) -> impl Iterator<Item = T> + '_ {
         let (lines, count) = self.lines(axis);

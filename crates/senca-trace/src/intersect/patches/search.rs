@@ -5,7 +5,7 @@ use senca_math::glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
 use super::PatchSurface;
-use super::cells::{Cell, Meeting};
+use super::cells::{Cell, MARGIN, Meeting};
 use super::hierarchy::{SingleRay, Visitor};
 use super::patch::Patch;
 use super::roots::{Domain, ROUNDING, Root, RootList, roots};
@@ -145,15 +145,15 @@ impl<S: Simd, W: Wanted> Visitor<S> for Search<'_, W> {
     fn cell(&mut self, simd: S, index: u32) {
         self.tests += 1;
         let cell = &self.surface.cells[index as usize];
-        let (near, is_sure) = match cell.meets(self.local.single.origin, self.local.single.direction) {
+        let near = match cell.meets(self.local.single.origin, self.local.single.direction) {
             Meeting::Never => return,
             Meeting::Unknown => return self.divide(cell),
-            Meeting::Once { near, is_sure } => (near.as_dvec2(), is_sure),
+            Meeting::Once(near) => near.as_dvec2(),
         };
         let patch = &self.surface.patches[cell.patch as usize];
         match newton(simd, patch, cell, near, &self.local) {
-            Newton::Outside if is_sure => {}
-            Newton::Outside | Newton::Lost => self.divide(cell),
+            Newton::Outside => {}
+            Newton::Lost => self.divide(cell),
             Newton::Inside { root, distance } => self.take(cell.patch, root, distance),
         }
     }
@@ -211,7 +211,7 @@ enum Newton {
         distance: f64,
     },
     Outside,
-    /// Rounding kept it from settling.
+    /// It does not settle, or so far outside that nothing is certain.
     Lost,
 }
 
@@ -250,8 +250,9 @@ fn newton<S: Simd>(simd: S, patch: &Patch, cell: &Cell, start: DVec2, ray: &Loca
 #[inline(always)]
 fn settle(cell: &Cell, uv: DVec2, error: DVec2, distance: f64, sign: f64) -> Newton {
     let tolerance = (5.0 * ROUNDING * error + 1e-13).min(DVec2::splat(1e-6));
-    if !cell.domain().holds(uv, tolerance) {
-        return Newton::Outside;
+    let domain = cell.domain();
+    if !domain.holds(uv, tolerance) {
+        return if domain.holds(uv, MARGIN * domain.half()) { Newton::Outside } else { Newton::Lost };
     }
     Newton::Inside { root: Root { uv: uv.clamp(DVec2::ZERO, DVec2::ONE), sign }, distance }
 }
