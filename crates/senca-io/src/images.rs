@@ -12,7 +12,6 @@
 mod decode;
 mod encode;
 mod pfm;
-mod srgb_table;
 
 pub use decode::{decode, decode_as, decode_picture};
 pub use encode::{PictureFormat, PictureOptions, PngCompression, encode};

@@ -50,6 +50,7 @@ pub mod projective;
 pub mod ray;
 pub mod roots;
 pub mod row_matrix;
+pub mod srgb_table;
 pub mod transform;
 pub mod view;
 pub mod view_file;
@@ -78,6 +79,7 @@ pub use roots::{
     Roots, cubic_roots, cubic_roots_closed_form, quadratic_roots, quartic_roots, quartic_roots_closed_form,
 };
 pub use row_matrix::{aligned_text, book_rows, from_book_rows, json_rows, named_json, named_text};
+pub use srgb_table::SrgbTable;
 pub use transform::{Axis, compose, normal_matrix};
 pub use view::{
     CentralByNormal, Lens, LookAtCamera, Normalization1991, ParallelByNormal, View, View1991, ViewError,

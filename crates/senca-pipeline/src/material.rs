@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use senca_math::LinearRgb;
-use senca_math::color::linear_from_srgb;
 use senca_math::glam::{Mat3, Vec2};
 use senca_raster::{Sampler, Texels, Texture, TextureError};
 use senca_scene::{
@@ -211,21 +209,14 @@ fn wrap_of(wrap: Wrap) -> senca_raster::Wrap {
     }
 }
 
-/// The picture in linear light: 8-bit colour is decoded to floats so that dark tones keep their steps
-/// and filtering happens in light; 8-bit data stays as it is.
+/// The picture as the sampler reads light from it: 8-bit colour stays in sRGB, which keeps the steps of
+/// dark tones, and is decoded as it is read; 8-bit data is taken as it is.
 fn texture_of(image: &TextureImage, space: ColorSpace) -> Result<Texture, TextureError> {
     let (width, height) = image.data.size();
     let texels = match (&image.data, space) {
         (ImageData::RgbaF32 { texels, .. }, _) => Texels::Rgba32F(texels.clone()),
         (ImageData::Rgba8 { texels, .. }, ColorSpace::Linear) => Texels::Rgba8(texels.clone()),
-        (ImageData::Rgba8 { texels, .. }, ColorSpace::Srgb) => {
-            let light: Vec<f32> = (0..=255u8).map(|v| linear_from_srgb(f32::from(v) / 255.0)).collect();
-            let decode = |t: &[u8; 4]| {
-                let [r, g, b] = [t[0], t[1], t[2]].map(|v| light[v as usize]);
-                [r, g, b, f32::from(t[3]) / 255.0]
-            };
-            Texels::Rgba32F(texels.par_iter().map(decode).collect())
-        }
+        (ImageData::Rgba8 { texels, .. }, ColorSpace::Srgb) => Texels::Srgb8(texels.clone()),
     };
     Texture::new(width, height, texels)
 }

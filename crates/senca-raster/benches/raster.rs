@@ -120,14 +120,44 @@ fn bin_only(bencher: Bencher<'_, '_>, cells: u32) {
     Sheet::new(cells).bench(bencher, &mut tiled(1), &Shading::None, state);
 }
 
-#[divan::bench(args = CELLS)]
-fn trilinear(bencher: Bencher<'_, '_>, cells: u32) {
-    let texels =
-        (0..256u32 * 256).map(|i| [(i % 256) as u8, (i / 256) as u8, (i % 13 * 19) as u8, 255]).collect();
-    let texture = Texture::new(256, 256, Texels::Rgba8(texels)).expect("sides and count fit").with_mipmaps();
+fn trilinear_of(bencher: Bencher<'_, '_>, cells: u32, rasterizer: &mut dyn Rasterizer, texels: Texels) {
+    let texture = Texture::new(256, 256, texels).expect("sides and count fit").with_mipmaps();
     let unit = TextureUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 3 };
     let shading = Shading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: Some(unit) };
-    Sheet::new(cells).bench(bencher, &mut tiled(1), &shading, State::default());
+    Sheet::new(cells).bench(bencher, rasterizer, &shading, State::default());
+}
+
+fn texels() -> Vec<[u8; 4]> {
+    (0..256u32 * 256).map(|i| [(i % 256) as u8, (i / 256) as u8, (i % 13 * 19) as u8, 255]).collect()
+}
+
+fn float_texels() -> Texels {
+    Texels::Rgba32F(texels().into_iter().map(|t| t.map(|v| f32::from(v) / 255.0)).collect())
+}
+
+#[divan::bench(args = CELLS)]
+fn trilinear(bencher: Bencher<'_, '_>, cells: u32) {
+    trilinear_of(bencher, cells, &mut tiled(1), Texels::Rgba8(texels()));
+}
+
+#[divan::bench(args = CELLS)]
+fn trilinear_srgb(bencher: Bencher<'_, '_>, cells: u32) {
+    trilinear_of(bencher, cells, &mut tiled(1), Texels::Srgb8(texels()));
+}
+
+#[divan::bench(args = CELLS)]
+fn trilinear_float(bencher: Bencher<'_, '_>, cells: u32) {
+    trilinear_of(bencher, cells, &mut tiled(1), float_texels());
+}
+
+#[divan::bench(args = CELLS)]
+fn trilinear_srgb_scanline(bencher: Bencher<'_, '_>, cells: u32) {
+    trilinear_of(bencher, cells, &mut ScanlineRasterizer, Texels::Srgb8(texels()));
+}
+
+#[divan::bench(args = CELLS)]
+fn trilinear_float_scanline(bencher: Bencher<'_, '_>, cells: u32) {
+    trilinear_of(bencher, cells, &mut ScanlineRasterizer, float_texels());
 }
 
 /// A caller's shader: a little arithmetic per fragment.

@@ -12,9 +12,10 @@ use crate::batch::{Batch, PlaneLanes};
 use crate::blend::Rgba;
 use crate::cover::{At, varying};
 use crate::texture::{
-    FARTHEST_TEXEL, Filter, LOG2, Mip, Sampler, TexelGrid, Texels, Texture, TextureLevel, Wrap,
+    FARTHEST_TEXEL, Filter, LOG2, Mip, Sampler, TexelGrid, Texels, Texture, TextureLevel, Wrap, light_of,
 };
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use senca_math::SrgbTable;
 
 type F<S> = f32x16<S>;
 type I<S> = i32x16<S>;
@@ -263,6 +264,11 @@ fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>;
     let index = j * I::splat(simd, level.width as i32) + i;
     match &level.texels {
         Texels::Rgba8(texels) => crate::blend::unpack(simd, gather(simd, texels, index)),
+        Texels::Srgb8(texels) => {
+            let mut out = [[0f32; LANES]; 4];
+            gather_light(texels, &index.to_array(), &mut out);
+            load4(simd, &out)
+        }
         Texels::Rgba32F(texels) => {
             let mut out = [[0f32; LANES]; 4];
             gather_planes(texels, &index.to_array(), &mut out);
@@ -289,6 +295,13 @@ impl<S: Simd> Taps<S> {
     pub(crate) fn between(&self, simd: S) -> [I<S>; 2] {
         let (scale, half) = (F::splat(simd, 256.0), F::splat(simd, 0.5));
         [(self.s * scale + half).to_int(), (self.t * scale + half).to_int()]
+    }
+
+    /// Numbers of the upper left and right texels, and of the lower ones.
+    #[inline(always)]
+    fn indices(&self) -> [[i32; LANES]; 4] {
+        let ([i0, i1], [row0, row1]) = (self.columns, self.rows);
+        [(row0 + i0).to_array(), (row0 + i1).to_array(), (row1 + i0).to_array(), (row1 + i1).to_array()]
     }
 }
 
@@ -321,18 +334,29 @@ fn bilinear<S: Simd>(simd: S, level: &TextureLevel, taps: &Taps<S>) -> Rgba<S> {
             let lower = [gather(simd, texels, row1 + i0), gather(simd, texels, row1 + i1)];
             mixed(simd, [upper, lower], taps.between(simd))
         }
-        Texels::Rgba32F(texels) => {
-            let at = |row: I<S>, i: I<S>| (row + i).to_array();
+        Texels::Srgb8(texels) => {
             let mut out = [[[0f32; LANES]; 4]; 4];
-            let indices = [at(row0, i0), at(row0, i1), at(row1, i0), at(row1, i1)];
-            for (out, index) in out.iter_mut().zip(&indices) {
+            for (out, index) in out.iter_mut().zip(&taps.indices()) {
+                gather_light(texels, index, out);
+            }
+            mixed_light(simd, &out, taps)
+        }
+        Texels::Rgba32F(texels) => {
+            let mut out = [[[0f32; LANES]; 4]; 4];
+            for (out, index) in out.iter_mut().zip(&taps.indices()) {
                 gather_planes(texels, index, out);
             }
-            let upper = lerp(load4(simd, &out[0]), load4(simd, &out[1]), taps.s);
-            let lower = lerp(load4(simd, &out[2]), load4(simd, &out[3]), taps.s);
-            lerp(upper, lower, taps.t)
+            mixed_light(simd, &out, taps)
         }
     }
+}
+
+/// Mean of four texels in floating point: upper left and right, lower left and right.
+#[inline(always)]
+fn mixed_light<S: Simd>(simd: S, texels: &[[[f32; LANES]; 4]; 4], taps: &Taps<S>) -> Rgba<S> {
+    let upper = lerp(load4(simd, &texels[0]), load4(simd, &texels[1]), taps.s);
+    let lower = lerp(load4(simd, &texels[2]), load4(simd, &texels[3]), taps.s);
+    lerp(upper, lower, taps.t)
 }
 
 /// Texels beside each other, by lane: upper rows, then lower.
@@ -419,6 +443,17 @@ pub(crate) fn load4<S: Simd>(simd: S, planes: &[[f32; LANES]; 4]) -> Rgba<S> {
 fn gather_planes(texels: &[[f32; 4]], index: &[i32; LANES], out: &mut [[f32; LANES]; 4]) {
     for (k, &i) in index.iter().enumerate() {
         let texel = texels.get(i as usize).copied().unwrap_or_default();
+        for (plane, v) in out.iter_mut().zip(texel) {
+            plane[k] = v;
+        }
+    }
+}
+
+#[inline(never)]
+fn gather_light(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [[f32; LANES]; 4]) {
+    let table = SrgbTable::get();
+    for (k, &i) in index.iter().enumerate() {
+        let texel = light_of(table, texels.get(i as usize).copied().unwrap_or_default());
         for (plane, v) in out.iter_mut().zip(texel) {
             plane[k] = v;
         }

@@ -6,7 +6,7 @@
 //! Coordinates u, v run from 0 to 1 over the picture, v = 0 at row 0. Where texels lie between is
 //! [`TexelGrid`].
 
-use senca_math::Image;
+use senca_math::{Image, SrgbTable};
 
 /// Longest side of a texture, in texels.
 pub const MAX_TEXTURE_SIDE: u32 = 1 << 15;
@@ -46,6 +46,8 @@ pub enum TextureError {
 pub enum Texels {
     /// 8 bits a channel, 255 standing for 1. Taken as it is: decode sRGB beforehand to sample light.
     Rgba8(Vec<[u8; 4]>),
+    /// Colour of 8 bits a channel in sRGB, read as light; alpha is 255 for 1. Filters mix light.
+    Srgb8(Vec<[u8; 4]>),
     /// 32-bit floating point.
     Rgba32F(Vec<[f32; 4]>),
 }
@@ -53,7 +55,7 @@ pub enum Texels {
 impl Texels {
     fn len(&self) -> usize {
         match self {
-            Self::Rgba8(t) => t.len(),
+            Self::Rgba8(t) | Self::Srgb8(t) => t.len(),
             Self::Rgba32F(t) => t.len(),
         }
     }
@@ -61,9 +63,22 @@ impl Texels {
     fn get(&self, i: usize) -> [f32; 4] {
         match self {
             Self::Rgba8(t) => t[i].map(|v| f32::from(v) * (1.0 / 255.0)),
+            Self::Srgb8(t) => light_of(SrgbTable::get(), t[i]),
             Self::Rgba32F(t) => t[i],
         }
     }
+}
+
+/// A texel of [`Texels::Srgb8`].
+#[inline]
+pub(crate) fn light_of(table: &SrgbTable, [r, g, b, a]: [u8; 4]) -> [f32; 4] {
+    [table.decode(r), table.decode(g), table.decode(b), f32::from(a) * (1.0 / 255.0)]
+}
+
+/// The nearest texel of [`Texels::Srgb8`].
+fn srgb8_of(table: &SrgbTable, [r, g, b, a]: [f32; 4]) -> [u8; 4] {
+    let alpha = crate::target::rgba8_from_rgba([a; 4])[3];
+    [table.encode(r), table.encode(g), table.encode(b), alpha]
 }
 
 /// One level of a [`Texture`].
@@ -122,6 +137,10 @@ impl TextureLevel {
         let texels = match &self.texels {
             Texels::Rgba8(_) => {
                 Texels::Rgba8((0..n).map(|i| crate::target::rgba8_from_rgba(texel(i))).collect())
+            }
+            Texels::Srgb8(_) => {
+                let table = SrgbTable::get();
+                Texels::Srgb8((0..n).map(|i| srgb8_of(table, texel(i))).collect())
             }
             Texels::Rgba32F(_) => Texels::Rgba32F((0..n).map(texel).collect()),
         };

@@ -1,5 +1,7 @@
 //! Textures: known answers of the plain sampler, and both rasterizers against each other.
 
+use senca_math::Srgb8;
+use senca_math::color::srgb_from_linear;
 use senca_math::glam::{Mat4, Vec3, Vec4};
 use senca_raster::{
     Buffers, ColorSource, Filter, Ids, Mip, Primitives, Rasterizer, Sampler, ScanlineRasterizer, Shading,
@@ -22,6 +24,19 @@ fn checks(width: u32, height: u32, float: bool) -> Texture {
         true => Texels::Rgba32F(bytes.into_iter().map(|t| t.map(|v| f32::from(v) / 255.0)).collect()),
     };
     Texture::new(width, height, texels).unwrap()
+}
+
+/// 8-bit sRGB, and the same light in floats.
+fn srgb_and_light(width: u32, height: u32) -> [Texture; 2] {
+    let texel =
+        |i: u32| [(i * 7 % 256) as u8, (i * 31 % 256) as u8, (i * 113 % 256) as u8, (i * 3 % 256) as u8];
+    let bytes: Vec<[u8; 4]> = (0..width * height).map(texel).collect();
+    let light = |&[r, g, b, a]: &[u8; 4]| {
+        let c = Srgb8 { r, g, b }.to_linear();
+        [c.r, c.g, c.b, f32::from(a) * (1.0 / 255.0)]
+    };
+    let floats = bytes.iter().map(light).collect();
+    [Texels::Srgb8(bytes), Texels::Rgba32F(floats)].map(|t| Texture::new(width, height, t).unwrap())
 }
 
 fn ramp(n: u32) -> Texture {
@@ -164,6 +179,54 @@ fn scene() -> (Vec<Vec4>, Vec<f32>, Vec<u32>) {
         varyings.extend([0.9, 0.7, 0.5, u, v]);
     }
     (positions, varyings, vec![0, 1, 2, 0, 2, 3, 4, 5, 6])
+}
+
+#[test]
+fn srgb_of_8_bits_reads_as_the_same_light_in_floats() {
+    let [srgb, light] = srgb_and_light(37, 19);
+    for k in 0..400 {
+        let uv = [k as f32 * 0.0173 - 1.0, k as f32 * 0.0291 - 2.0];
+        for sampler in [Sampler::NEAREST, Sampler::BILINEAR] {
+            assert_eq!(sampler.sample_lod(&srgb, uv, 0.0), sampler.sample_lod(&light, uv, 0.0));
+        }
+    }
+    // Smaller levels are rounded to codes: half a code off from level to level.
+    let [srgb, light] = [srgb, light].map(Texture::with_mipmaps);
+    for (level, (a, b)) in srgb.levels().iter().zip(light.levels()).enumerate() {
+        for i in 0..a.width() * a.height() {
+            let (a, b) = (a.texel(i % a.width(), i / a.width()), b.texel(i % b.width(), i / b.width()));
+            let codes = |c: [f32; 4]| [c[0], c[1], c[2]].map(|v| srgb_from_linear(v) * 255.0);
+            let apart = codes(a).iter().zip(codes(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(apart <= 0.001 + 0.75 * level as f32, "level {level}: {apart}");
+            assert!((a[3] - b[3]).abs() <= 0.75 * level as f32 / 255.0 + 1e-6);
+        }
+    }
+}
+
+#[test]
+fn both_rasterizers_read_srgb_to_the_bit() {
+    let (positions, varyings, indices) = scene();
+    let ids = Ids::From(0);
+    let primitives =
+        Primitives { positions: &positions, varyings: &varyings, stride: 5, indices: &indices, ids };
+    let [srgb, light] = srgb_and_light(37, 19);
+    for sampler in [Sampler::NEAREST, Sampler::BILINEAR, Sampler::TRILINEAR] {
+        let picture = |rasterizer: &mut dyn Rasterizer, texture: &Texture| {
+            let unit = TextureUnit { texture, sampler, coords: 3 };
+            let shading = Shading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: Some(unit) };
+            let mut buffers = Buffers::new(90, 70);
+            rasterizer.draw(&mut buffers.target().unwrap(), &primitives, &State::default(), &shading);
+            buffers.color
+        };
+        let plain = picture(&mut ScanlineRasterizer, &srgb);
+        assert_eq!(plain, picture(&mut TiledRasterizer::default(), &srgb));
+        assert_eq!(plain, picture(&mut TiledRasterizer::default(), &light));
+        let levels = srgb.clone().with_mipmaps();
+        assert_eq!(
+            picture(&mut ScanlineRasterizer, &levels),
+            picture(&mut TiledRasterizer::default(), &levels)
+        );
+    }
 }
 
 #[test]

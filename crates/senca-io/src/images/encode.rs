@@ -8,10 +8,9 @@ use image::codecs::jpeg::JpegEncoder;
 use image::codecs::openexr::OpenExrEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use rayon::prelude::*;
-use senca_math::Image;
+use senca_math::{Image, SrgbTable};
 
 use super::pfm;
-use super::srgb_table::SrgbTable;
 use crate::WriteError;
 
 /// File formats that pictures are written in.

@@ -1,4 +1,4 @@
-//! sRGB encoding to 8 bits by one table look-up.
+//! sRGB of 8 bits to light and back by one table look-up.
 //!
 //! The codes 0 to 255 divide the floats in [0, 1] into 256 ranges. Cut by the top bits of its
 //! exponent and mantissa, the same interval falls into buckets narrow enough that none holds more
@@ -8,7 +8,8 @@
 
 use std::sync::LazyLock;
 
-use senca_math::LinearRgb;
+use crate::LinearRgb;
+use crate::color::linear_from_srgb;
 
 /// Mantissa bits that choose a bucket. Near 1 neighbouring borders are 0.9 % apart and buckets
 /// 0.4 % wide; with 6 bits some buckets would hold two borders.
@@ -31,16 +32,18 @@ struct Bucket {
     code: u8,
 }
 
-/// The encoding table.
-pub(super) struct SrgbTable {
+/// The table, of both directions.
+pub struct SrgbTable {
     buckets: [Bucket; BUCKETS],
+    light: [f32; 256],
 }
 
 static TABLE: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
 
 impl SrgbTable {
     /// The table, made on first use.
-    pub(super) fn get() -> &'static Self {
+    #[must_use]
+    pub fn get() -> &'static Self {
         &TABLE
     }
 
@@ -51,12 +54,21 @@ impl SrgbTable {
             let code = code_of(start);
             Bucket { border: borders.get(usize::from(code)).copied().unwrap_or(f32::INFINITY), code }
         });
-        Self { buckets }
+        let light = std::array::from_fn(|code| linear_from_srgb(code as f32 / 255.0));
+        Self { buckets, light }
     }
 
-    /// The 8-bit code of linear `v`: clamped to [0, 1], NaN as 0.
+    /// The light of a code, as [`Srgb8::to_linear`](crate::Srgb8::to_linear) says.
+    #[must_use]
     #[inline]
-    pub(super) fn encode(&self, v: f32) -> u8 {
+    pub fn decode(&self, code: u8) -> f32 {
+        self.light[usize::from(code)]
+    }
+
+    /// The 8-bit code of linear `v`, as [`LinearRgb::to_srgb8`] says: clamped to [0, 1], NaN as 0.
+    #[must_use]
+    #[inline]
+    pub fn encode(&self, v: f32) -> u8 {
         // Written so that NaN takes the first branch's value.
         let v = if v > SMALLEST { v } else { SMALLEST };
         let v = if v < 1.0 { v } else { 1.0 };
@@ -96,6 +108,15 @@ mod tests {
                 let v = f32::from_bits(bits);
                 assert_eq!(table.encode(v), code_of(v), "{v:e} near the border of {code}");
             }
+        }
+    }
+
+    #[test]
+    fn decoding_agrees_with_the_formula() {
+        for code in 0..=255u8 {
+            let light = SrgbTable::get().decode(code);
+            assert_eq!(light, crate::Srgb8 { r: code, g: 0, b: 0 }.to_linear().r);
+            assert_eq!(SrgbTable::get().encode(light), code);
         }
     }
 
