@@ -71,11 +71,14 @@ pub struct Surface {
     /// Whether normals that the file does not give are averaged over the surface's faces. Default
     /// true; false gives each face its own normal.
     pub smooth: bool,
+    /// Smooth surfaces of the same number share normals where they meet, as the materials of one body
+    /// do. 0, the default: with no other surface.
+    pub smoothing_group: u32,
 }
 
 impl Default for Surface {
     fn default() -> Self {
-        Self { name: String::new(), material: None, smooth: true }
+        Self { name: String::new(), material: None, smooth: true, smoothing_group: 0 }
     }
 }
 

@@ -27,6 +27,12 @@ pub struct NormalSettings {
     /// there; `None` keeps every surface smooth throughout. Default 50 degrees: a cylinder of eight
     /// sides is round, a hexagonal nut is not.
     pub crease_angle: Option<f32>,
+    /// Whether a dense mesh with hardly an edge sharper than that is smooth throughout all the same:
+    /// what is sharp in a scan is noise, and shows as ragged spots. Default true. A mesh counts as
+    /// dense with 5000 faces, and edges as few when they are less than 1 %; an edge is a crease even
+    /// then when a face beside it reaches over 2 % of the mesh's diagonal, as the cap of a finely
+    /// divided cylinder does.
+    pub smooth_scans: bool,
 }
 
 /// What a face's normal counts for at one of its corners.
@@ -54,18 +60,26 @@ pub enum PolygonNormal {
 impl Default for NormalSettings {
     fn default() -> Self {
         let crease_angle = Some(50f32.to_radians());
-        Self { weight: NormalWeight::Angle, polygon: PolygonNormal::Newell, crease_angle }
+        Self { weight: NormalWeight::Angle, polygon: PolygonNormal::Newell, crease_angle, smooth_scans: true }
     }
 }
 
 impl NormalSettings {
     /// The rules of the 1991 thesis: unit polygon normals of the sliding triple, averaged per surface.
-    pub const THESIS_1991: Self =
-        Self { weight: NormalWeight::Equal, polygon: PolygonNormal::SlidingTriple, crease_angle: None };
+    pub const THESIS_1991: Self = Self {
+        weight: NormalWeight::Equal,
+        polygon: PolygonNormal::SlidingTriple,
+        crease_angle: None,
+        smooth_scans: false,
+    };
 
     /// Angle weights, smooth throughout each surface.
-    pub const SMOOTH: Self =
-        Self { weight: NormalWeight::Angle, polygon: PolygonNormal::Newell, crease_angle: None };
+    pub const SMOOTH: Self = Self {
+        weight: NormalWeight::Angle,
+        polygon: PolygonNormal::Newell,
+        crease_angle: None,
+        smooth_scans: false,
+    };
 }
 
 /// A polygon no three consecutive corners of which span a plane.

@@ -571,7 +571,7 @@ fn add_elements(
         if !elements.triangles.is_empty() {
             // Faces made flat beside others with normals hold the faces' own normals.
             let smooth = group.normal.is_some() && group.vertex_point.is_none();
-            mesh.surfaces.push(Surface { name: String::new(), material, smooth });
+            mesh.surfaces.push(Surface { material, smooth, ..Surface::default() });
         } else if loose.is_none() {
             loose = material;
         }

@@ -54,7 +54,12 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
 }
 
 fn surface(name: String, key: &SurfaceKey, material: Option<MaterialId>) -> Surface {
-    Surface { name, material, smooth: key.smoothing != Smoothing::Off }
+    let smoothing_group = match key.smoothing {
+        Smoothing::Unsaid => 1,
+        Smoothing::Off => 0,
+        Smoothing::Group(group) => group.saturating_add(1),
+    };
+    Surface { name, material, smooth: key.smoothing != Smoothing::Off, smoothing_group }
 }
 
 /// Decodes colours; ones above 1 anywhere mean that they run to 255.

@@ -40,7 +40,7 @@ pub(super) fn read<'a>(table: &mut Table<'a>, material: &mut FindMaterial<'_, 'a
         part.set_what(format!("surface \"{name}\""));
         let material = part.read("material", &mut *material)?;
         let smooth = part.read_or("smooth", smooth, Value::boolean)?;
-        builder.surfaces.push(Surface { name, material, smooth });
+        builder.surfaces.push(Surface { name, material, smooth, ..Surface::default() });
         let faces = part.require("faces")?;
         let face_uv = part.get("face_uv");
         builder.add_faces(faces, face_uv)?;

@@ -14,7 +14,8 @@ struct Corner {
     face: u32,
     /// Vertex it names.
     vertex: u32,
-    surface: u32,
+    /// Whom it may share a normal with; see [`family`].
+    family: u64,
     /// Points before and after it in the face.
     neighbors: [u32; 2],
     /// What it adds to the normal.
@@ -35,12 +36,100 @@ pub(super) fn split(mesh: &mut Mesh, faces: &[FaceInfo], apart: &[bool], setting
     let lists = corner_lists(mesh, apart);
     let mut work = Vec::new();
     let mut claimed = vec![false; mesh.vertices.point.len()];
+    let crease = settings.crease_angle.map(|angle| Crease::new(mesh, faces, &lists, angle, settings));
     for range in lists.starts.windows(2) {
-        work.clear();
-        let entries = &lists.entries[range[0] as usize..range[1] as usize];
-        work.extend(entries.iter().map(|&(at, face)| corner(mesh, faces, at, face, settings)));
-        group_corners(mesh, faces, &mut work, settings.crease_angle);
+        corners_at(mesh, faces, &lists, range, settings, &mut work);
+        group_corners(mesh, faces, &mut work, crease.as_ref());
         assign(mesh, faces, &mut work, &mut claimed);
+    }
+}
+
+/// Fills `work` with the corners of one point.
+fn corners_at(
+    mesh: &Mesh,
+    faces: &[FaceInfo],
+    lists: &CornerLists,
+    range: &[u32],
+    settings: &NormalSettings,
+    work: &mut Vec<Corner>,
+) {
+    work.clear();
+    let entries = &lists.entries[range[0] as usize..range[1] as usize];
+    work.extend(entries.iter().map(|&(at, face)| corner(mesh, faces, at, face, settings)));
+}
+
+/// Number of those a corner may share a normal with: its smoothing group, its surface where it has
+/// none, itself on a flat surface.
+fn family(mesh: &Mesh, surface: u32, face: u32) -> u64 {
+    match mesh.surfaces.get(surface as usize) {
+        Some(s) if !s.smooth => 2 << 32 | u64::from(face),
+        Some(s) if s.smoothing_group != 0 => 1 << 32 | u64::from(s.smoothing_group),
+        _ => u64::from(surface),
+    }
+}
+
+/// Fewest faces of a dense mesh.
+const DENSE: usize = 5000;
+/// Largest share of sharp edges that are taken for noise.
+const FEW: f64 = 0.01;
+/// Farthest that faces at an edge taken for noise reach from it, in diagonals of the mesh.
+const SHORT: f32 = 0.02;
+
+/// Which edges are creases.
+struct Crease {
+    /// Cosine of the angle.
+    cosine: f32,
+    /// Faces must reach this far from the edge.
+    least_reach: f32,
+}
+
+impl Crease {
+    fn new(
+        mesh: &Mesh,
+        faces: &[FaceInfo],
+        lists: &CornerLists,
+        angle: f32,
+        settings: &NormalSettings,
+    ) -> Self {
+        let sharp = Self { cosine: angle.clamp(0.0, std::f32::consts::PI).cos(), least_reach: 0.0 };
+        if !settings.smooth_scans || faces.len() < DENSE {
+            return sharp;
+        }
+        // Every sharp edge is met at both ends: normals that differ by the angle cannot both be within
+        // half of it from their mean, so that both points are among those looked at.
+        let (mut work, mut ends, mut met) = (Vec::new(), Vec::new(), 0u64);
+        for range in lists.starts.windows(2) {
+            corners_at(mesh, faces, lists, range, settings, &mut work);
+            for_each_edge(&work, &mut ends, |end, a, b| {
+                met += u64::from(sharp.parts(mesh, faces, &work[a], &work[b], end));
+            });
+        }
+        let edges = mesh.faces.corners.len() as f64 / 2.0;
+        if met as f64 / 2.0 > FEW * edges {
+            return sharp;
+        }
+        let finite = mesh.points.iter().filter(|p| p.is_finite());
+        let (low, high) =
+            finite.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
+        Self { least_reach: SHORT * low.distance(high), ..sharp }
+    }
+
+    /// Whether the edge from the point of `a` and `b` to point `end` is a crease between them.
+    fn parts(&self, mesh: &Mesh, faces: &[FaceInfo], a: &Corner, b: &Corner, end: u32) -> bool {
+        let info = |c: &Corner| faces[c.face as usize];
+        if info(a).normal.dot(info(b).normal) >= self.cosine {
+            return false;
+        }
+        if self.least_reach == 0.0 {
+            return true;
+        }
+        let edge = mesh.position(a.vertex).distance(mesh.points[end as usize]);
+        // How far a parallelogram of that area reaches, or a triangle.
+        let reach = |c: &Corner| {
+            let triangle = mesh.faces.corners_of(c.face as usize).len() == 3;
+            info(c).area * if triangle { 2.0 } else { 1.0 }
+        };
+        reach(a).max(reach(b)) >= self.least_reach * edge
     }
 }
 
@@ -80,7 +169,7 @@ fn corner(mesh: &Mesh, faces: &[FaceInfo], at: u32, face: u32, settings: &Normal
         at,
         face,
         vertex: corners[i],
-        surface: mesh.faces.surface_of(face as usize),
+        family: family(mesh, mesh.faces.surface_of(face as usize), face),
         neighbors: [neighbor(n - 1), neighbor(1)],
         share: corner_share(mesh, corners, i, faces[face as usize], settings.weight),
         group: 0,
@@ -88,45 +177,55 @@ fn corner(mesh: &Mesh, faces: &[FaceInfo], at: u32, face: u32, settings: &Normal
 }
 
 /// Sets the groups of the corners of one point.
-fn group_corners(mesh: &Mesh, faces: &[FaceInfo], work: &mut [Corner], crease: Option<f32>) {
+fn group_corners(mesh: &Mesh, faces: &[FaceInfo], work: &mut [Corner], crease: Option<&Crease>) {
+    if crease.is_none() {
+        work.sort_by_key(|c| c.family);
+    }
     for (i, corner) in work.iter_mut().enumerate() {
         corner.group = i as u32;
     }
-    let smooth = |surface: u32| mesh.surfaces.get(surface as usize).is_none_or(|s| s.smooth);
     match crease {
         None => {
-            work.sort_by_key(|c| c.surface);
-            for i in 0..work.len() {
-                let joins = i > 0 && work[i - 1].surface == work[i].surface && smooth(work[i].surface);
-                work[i].group = if joins { work[i - 1].group } else { i as u32 };
+            for i in 1..work.len() {
+                if work[i - 1].family == work[i].family {
+                    work[i].group = work[i - 1].group;
+                }
             }
         }
-        Some(angle) => join_across_edges(faces, work, angle.clamp(0.0, std::f32::consts::PI).cos(), smooth),
+        Some(crease) => join_across_edges(mesh, faces, work, crease),
     }
 }
 
-/// Joins corners of one smooth surface that share an edge at the point and whose faces differ by no
-/// more than the crease angle.
-fn join_across_edges(faces: &[FaceInfo], work: &mut [Corner], cosine: f32, smooth: impl Fn(u32) -> bool) {
-    // Ends of edges at the point, so that corners on both sides of an edge come together.
-    let mut ends: Vec<(u32, u32, u32)> = Vec::with_capacity(2 * work.len());
+/// Joins corners of one family that share an edge at the point which is no crease.
+fn join_across_edges(mesh: &Mesh, faces: &[FaceInfo], work: &mut [Corner], crease: &Crease) {
+    let (mut ends, mut joined) = (Vec::with_capacity(2 * work.len()), Vec::new());
+    for_each_edge(work, &mut ends, |end, a, b| {
+        if !crease.parts(mesh, faces, &work[a], &work[b], end) {
+            joined.push((a as u32, b as u32));
+        }
+    });
+    for (a, b) in joined {
+        let (ra, rb) = (root(work, a), root(work, b));
+        work[ra.max(rb) as usize].group = ra.min(rb);
+    }
+    for i in 0..work.len() as u32 {
+        work[i as usize].group = root(work, i);
+    }
+}
+
+/// Calls `visit` for the corners of one family on both sides of an edge at the point, with the point
+/// at its other end.
+fn for_each_edge(work: &[Corner], ends: &mut Vec<(u64, u32, u32)>, mut visit: impl FnMut(u32, usize, usize)) {
+    ends.clear();
     for (i, c) in work.iter().enumerate() {
-        ends.extend(c.neighbors.map(|neighbor| (c.surface, neighbor, i as u32)));
+        ends.extend(c.neighbors.map(|neighbor| (c.family, neighbor, i as u32)));
     }
     ends.sort_unstable();
     for pair in ends.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        if (a.0, a.1) != (b.0, b.1) || !smooth(a.0) {
-            continue;
+        if (a.0, a.1) == (b.0, b.1) {
+            visit(a.1, a.2 as usize, b.2 as usize);
         }
-        let normal = |i: u32| faces[work[i as usize].face as usize].normal;
-        if normal(a.2).dot(normal(b.2)) >= cosine {
-            let (ra, rb) = (root(work, a.2), root(work, b.2));
-            work[ra.max(rb) as usize].group = ra.min(rb);
-        }
-    }
-    for i in 0..work.len() as u32 {
-        work[i as usize].group = root(work, i);
     }
 }
 

@@ -155,6 +155,69 @@ fn creases_split_what_is_sharper_than_the_angle() {
 }
 
 #[test]
+fn surfaces_of_one_group_are_smooth_across_their_border() {
+    let torus = crate::Shape::Torus { major_radius: 2.0, minor_radius: 0.7 };
+    let mut mesh = crate::tessellate(&torus, &crate::TessellationSettings::default()).unwrap().into_owned();
+    compute_normals(&mut mesh, &NormalSettings::default());
+    let whole = mesh.vertices.normal.clone();
+    let halves = |group: u32| {
+        let mut mesh = mesh.clone();
+        mesh.surfaces = vec![Surface { smoothing_group: group, ..Surface::default() }; 2];
+        mesh.faces.surface = (0..mesh.faces.len()).map(|f| (f % 2) as u32).collect();
+        compute_normals(&mut mesh, &NormalSettings::default());
+        mesh.vertices.normal
+    };
+    assert!(halves(0).len() > whole.len());
+    let one_body = halves(7);
+    assert_eq!(one_body.len(), whole.len());
+    assert!(one_body.iter().zip(&whole).all(|(a, b)| a.distance(*b) < 1e-5));
+}
+
+/// A bumpy square of `n` x `n` cells, two of its bumps sharp.
+fn scan(n: u32) -> Mesh {
+    let at = |x: u32, y: u32| y * (n + 1) + x;
+    let height = |x: u32, y: u32| if (x, y) == (5, 5) || (x, y) == (n - 9, 7) { 2.0 } else { 0.0 };
+    let points = (0..(n + 1) * (n + 1)).map(|i| (i % (n + 1), i / (n + 1)));
+    let mut faces = Faces::default();
+    for (x, y) in (0..n * n).map(|i| (i % n, i / n)) {
+        faces.push(&[at(x, y), at(x + 1, y), at(x + 1, y + 1)], 0);
+        faces.push(&[at(x, y), at(x + 1, y + 1), at(x, y + 1)], 0);
+    }
+    Mesh {
+        points: points.map(|(x, y)| Vec3::new(x as f32, y as f32, height(x, y))).collect(),
+        vertices: Vertices { point: (0..(n + 1) * (n + 1)).collect(), ..Vertices::default() },
+        faces,
+        surfaces: vec![Surface::default()],
+        ..Mesh::default()
+    }
+}
+
+#[test]
+fn noise_of_a_scan_makes_no_creases() {
+    for (n, creases) in [(80, false), (20, true)] {
+        let mut mesh = scan(n);
+        let vertices = mesh.vertices.point.len();
+        compute_normals(&mut mesh, &NormalSettings::default());
+        assert_eq!(mesh.vertices.point.len() > vertices, creases, "{n}");
+        let mut mesh = scan(n);
+        compute_normals(&mut mesh, &NormalSettings { smooth_scans: false, ..NormalSettings::default() });
+        assert!(mesh.vertices.point.len() > vertices);
+    }
+    // A dense mesh on a large wall: the wall reaches far, so its edge stays.
+    let mut mesh = scan(80);
+    let far = mesh.points.len() as u32;
+    mesh.points.extend([Vec3::new(0.0, 0.0, -60.0), Vec3::new(80.0, 0.0, -60.0)]);
+    mesh.vertices.point.extend([far, far + 1]);
+    for x in 0..80 {
+        mesh.faces.push(&[x + 1, x, far], 0);
+    }
+    mesh.faces.push(&[80, far, far + 1], 0);
+    let vertices = mesh.vertices.point.len();
+    compute_normals(&mut mesh, &NormalSettings::default());
+    assert!(mesh.vertices.point.len() >= vertices + 79);
+}
+
+#[test]
 fn flat_surfaces_do_not_share_normals() {
     let mut mesh = cube();
     mesh.surfaces[0].smooth = false;
