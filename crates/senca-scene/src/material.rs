@@ -170,13 +170,18 @@ impl Material {
     }
 
     /// The opacity that a renderer with transmitted rays gives a surface whose alpha, texture included,
-    /// is `alpha`: 1 where the material transmits, so that what is behind is not counted twice.
+    /// is `alpha`: 1 for opaque materials, and where a blended one transmits, so that what is behind is
+    /// not counted twice. The alpha of a mask stays what it is.
     ///
     /// Glass is often written with both, an alpha for renderers that lay colours over each other and
     /// a transmission for those that trace.
     #[must_use]
     pub fn tracer_alpha(&self, alpha: f32) -> f32 {
-        if self.is_transmissive() || self.alpha_mode == AlphaMode::Opaque { 1.0 } else { alpha }
+        match self.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Blend if self.is_transmissive() => 1.0,
+            AlphaMode::Blend | AlphaMode::Mask { .. } => alpha,
+        }
     }
 }
 

@@ -117,7 +117,9 @@ impl<'s> MaterialTable<'s> {
             multiply_base(&mut point.reflection, at.color);
             point.coverage *= at.color.w;
         }
-        point.coverage = coverage(entry.alpha_mode, point.coverage);
+        // What transmits is there all over: its alpha is for renderers without transmitted rays.
+        let transmits = entry.alpha_mode == AlphaMode::Blend && point.transmission != LinearRgb::BLACK;
+        point.coverage = if transmits { 1.0 } else { coverage(entry.alpha_mode, point.coverage) };
         point
     }
 
@@ -308,8 +310,8 @@ fn constant_of(material: &Material, reflection: ReflectionPoint, alpha: f32) -> 
         mirror: material.mirror,
         transmission: material.transmission,
         ior: if material.ior > 0.0 { material.ior } else { 1.0 },
-        absorption: LinearRgb::BLACK,
-        fresnel: false,
+        absorption: material.absorption,
+        fresnel: material.fresnel,
         double_sided: material.double_sided,
     }
 }

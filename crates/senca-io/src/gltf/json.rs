@@ -169,6 +169,8 @@ json_objects! {
         ior: Option<Ior>,
         #[serde(rename = "KHR_materials_transmission")]
         transmission: Option<Transmission>,
+        #[serde(rename = "KHR_materials_volume")]
+        volume: Option<Volume>,
         #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
         specular_glossiness: Option<SpecularGlossiness>,
     }
@@ -176,6 +178,7 @@ json_objects! {
     EmissiveStrength { emissive_strength: Option<f64>, }
     Ior { ior: Option<f64>, }
     Transmission { transmission_factor: f64, transmission_texture: Option<Box<TextureInfo>>, }
+    Volume { thickness_factor: f64, attenuation_distance: Option<f64>, attenuation_color: Option<[f64; 3]>, }
     SpecularGlossiness {
         diffuse_factor: Option<[f64; 4]>,
         diffuse_texture: Option<Box<TextureInfo>>,

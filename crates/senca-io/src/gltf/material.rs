@@ -59,6 +59,10 @@ impl Reader<'_, '_> {
         }
         if let Some(json) = &extensions.transmission {
             material.transmission = self.transmission(json, &reflection);
+            material.fresnel = true;
+        }
+        if let Some(json) = &extensions.volume {
+            material.absorption = self.absorption(json);
         }
         material.reflection = Reflection::MetallicRoughness(reflection);
         material
@@ -94,6 +98,19 @@ impl Reader<'_, '_> {
         }
         let factor = self.factor("transmissionFactor", Some(json.transmission_factor), 0.0);
         reflection.base_color * (factor * (1.0 - reflection.metallic))
+    }
+
+    /// What the attenuation of a volume takes away per unit of length: light keeps the attenuation
+    /// colour over the attenuation distance (KHR_materials_volume). Without thickness the surface is a
+    /// thin wall, which has no inside.
+    fn absorption(&self, json: &json::Volume) -> LinearRgb {
+        let distance = json.attenuation_distance.filter(|d| *d > 0.0 && d.is_finite());
+        let Some(distance) = distance.filter(|_| json.thickness_factor > 0.0) else {
+            return LinearRgb::BLACK;
+        };
+        // Black would take everything away at once; a hundred-thousandth is left of it.
+        let color = self.color("attenuationColor", json.attenuation_color, 1.0).map(|c| c.clamp(1e-5, 1.0));
+        color.map(|c| (-f64::from(c).ln() / distance).min(f64::from(f32::MAX)) as f32)
     }
 
     /// 0 stands for a mirror without refraction, which an enormous index comes close to.

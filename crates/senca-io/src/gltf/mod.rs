@@ -17,7 +17,7 @@
 //!   tangents and texture coordinates of any allowed type (KHR_mesh_quantization).
 //! - Also read: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_ior,
 //!   KHR_materials_pbrSpecularGlossiness (converted), KHR_materials_transmission (without its
-//!   texture), KHR_materials_unlit, KHR_texture_transform.
+//!   texture), KHR_materials_unlit, KHR_materials_volume (its attenuation), KHR_texture_transform.
 //!
 //! What is odd but can be shown (an element that names a missing vertex, a lost picture, a node with
 //! two parents) is left out with a warning in [`Scene::warnings`]; what leaves nothing to trust (an
@@ -58,7 +58,7 @@ use document::Document;
 pub use write::{WriteSettings, write_glb, write_gltf};
 
 /// Extensions that are read.
-const KNOWN_EXTENSIONS: [&str; 9] = [
+const KNOWN_EXTENSIONS: [&str; 10] = [
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -66,6 +66,7 @@ const KNOWN_EXTENSIONS: [&str; 9] = [
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];

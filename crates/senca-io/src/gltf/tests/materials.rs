@@ -57,6 +57,8 @@ fn every_property_arrives() {
         "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
         "extensions": {"KHR_materials_unlit": {}, "KHR_materials_ior": {"ior": 1.25},
             "KHR_materials_emissive_strength": {"emissiveStrength": 8},
+            "KHR_materials_volume": {"thicknessFactor": 0.1, "attenuationDistance": 2,
+                "attenuationColor": [1, 0.5, 0.25]},
             "KHR_materials_transmission": {"transmissionFactor": 0.5}}}]);
     let scene = file.read();
     assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
@@ -76,6 +78,9 @@ fn every_property_arrives() {
     assert_eq!(material.alpha_mode, AlphaMode::Mask { cutoff: 0.25 });
     assert!(material.double_sided && material.unlit);
     assert_eq!((material.ior, material.transmission), (1.25, LinearRgb::new(0.125, 0.0625, 0.03125)));
+    let half = 0.5 * std::f32::consts::LN_2;
+    assert!(material.fresnel && material.absorption.r == 0.0);
+    assert!((material.absorption.g - half).abs() < 1e-6 && (material.absorption.b - 2.0 * half).abs() < 1e-6);
 }
 
 /// The example in the extension's text: the lower left quadrant, rotated clockwise by 90 degrees.

@@ -176,6 +176,11 @@ impl MaterialWriter<'_> {
             let factor = (material.transmission.max_component() / coloured).clamp(0.0, 1.0);
             self.extend(extensions, "KHR_materials_transmission", json!({"transmissionFactor": factor}));
         }
+        if material.absorption != LinearRgb::BLACK {
+            let color = material.absorption.map(|a| (-a).exp()).to_array().map(f64::from);
+            let volume = json!({"thicknessFactor": 1.0, "attenuationDistance": 1.0, "attenuationColor": numbers(&color)});
+            self.extend(extensions, "KHR_materials_volume", volume);
+        }
         if material.mirror != LinearRgb::BLACK {
             self.output
                 .warn(format!("material {:?}: glTF has no mirror coefficient; left out", material.name));
