@@ -3,6 +3,7 @@
 use senca_math::Aabb;
 use senca_math::glam::{DMat4, DVec3};
 
+use crate::half_spaces::{self, HalfSpace};
 use crate::{MaterialId, Shape, ShapeError, Topology, Transform};
 use crate::{TessellationSettings, Tolerance, tessellate};
 
@@ -172,11 +173,34 @@ impl CsgNode {
 
     fn bounds_in(&self, world_from_object: &DMat4) -> Aabb {
         let of = |node: &Self| node.bounds_in(world_from_object);
-        match self {
-            Self::Leaf(leaf) => leaf.bounds_in(world_from_object),
-            Self::Union(nodes) => nodes.iter().map(of).fold(Aabb::EMPTY, Aabb::union),
+        let bounds = match self {
+            Self::Leaf(leaf) => return leaf.bounds_in(world_from_object),
+            Self::Union(nodes) => return nodes.iter().map(of).fold(Aabb::EMPTY, Aabb::union),
             Self::Intersection(nodes) => nodes.iter().map(of).fold(everything(), intersection),
             Self::Difference(nodes) => nodes.first().map_or(Aabb::EMPTY, of),
+        };
+        let mut half_spaces = Vec::new();
+        self.collect_half_spaces(world_from_object, 1.0, &mut half_spaces);
+        half_spaces::cut(bounds, &half_spaces)
+    }
+
+    /// Half-spaces that all of this part lies in: those of its planes that are intersected, and the
+    /// other sides of those that are taken away.
+    fn collect_half_spaces(&self, world_from_object: &DMat4, sign: f64, found: &mut Vec<HalfSpace>) {
+        match self {
+            Self::Leaf(leaf) if matches!(*leaf.shape, Shape::Plane { size: None }) => {
+                let (normal, point) = half_space(&(*world_from_object * leaf.transform.matrix()));
+                found.push(HalfSpace { normal: sign * normal, offset: sign * normal.dot(point) });
+            }
+            Self::Intersection(nodes) if sign > 0.0 => {
+                nodes.iter().for_each(|node| node.collect_half_spaces(world_from_object, sign, found));
+            }
+            Self::Difference(nodes) if sign > 0.0 => {
+                for (i, node) in nodes.iter().enumerate() {
+                    node.collect_half_spaces(world_from_object, if i == 0 { 1.0 } else { -1.0 }, found);
+                }
+            }
+            _ => {}
         }
     }
 }
@@ -387,5 +411,26 @@ mod tests {
         let cut = Csg { root: CsgNode::Difference(vec![ball(0.0), half_space]) };
         assert_eq!(cut.bounds_in(&DMat4::IDENTITY).max, DVec3::ONE);
         assert_eq!(Shape::Csg(lens).bounds().max.x, 1.0);
+    }
+
+    #[test]
+    fn planes_alone_can_make_a_body() {
+        use senca_math::glam::DQuat;
+        // A regular tetrahedron around the origin, its faces at distance 1: corners at distance 3.
+        let up = DVec3::new(1.0, 1.0, 1.0).normalize();
+        let normals =
+            [up, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, 1.0, -1.0), DVec3::new(1.0, -1.0, -1.0)];
+        let plane = |n: DVec3| {
+            let turn = DQuat::from_rotation_arc(DVec3::Y, n.normalize());
+            let place = DMat4::from_rotation_translation(turn, n.normalize());
+            CsgNode::leaf(Shape::Plane { size: None }, Transform::Matrix(place), None)
+        };
+        let all = Csg { root: CsgNode::Intersection(normals.map(plane).to_vec()) };
+        assert_eq!(all.check(), Ok(()));
+        let bounds = all.bounds_in(&DMat4::IDENTITY);
+        let side = 3f64.sqrt();
+        assert!((bounds.max - side).length() < 1e-6 && (bounds.min + side).length() < 1e-6, "{bounds:?}");
+        let three = Csg { root: CsgNode::Intersection(normals[..3].iter().map(|&n| plane(n)).collect()) };
+        assert!(three.check().is_err_and(|e| e.to_string().contains("no end")));
     }
 }

@@ -44,6 +44,7 @@ mod environment;
 mod faces;
 mod fog;
 mod framing;
+mod half_spaces;
 mod ids;
 mod light;
 mod material;

@@ -10,7 +10,8 @@
 //! two faces at every edge.
 //!
 //! The grid is refined until the middles of faces are within the tolerance of the surface, up to
-//! [`MOST_ALONG`] cells along the longest side.
+//! [`MOST_ALONG`] cells along the longest side, or until a finer grid no longer helps, as at the tips
+//! of cones.
 
 mod cell;
 mod field;
@@ -34,6 +35,13 @@ const MOST_ALONG: u32 = 256;
 
 /// Fewest cells along the longest side.
 const LEAST_ALONG: u32 = 16;
+
+/// Share of the error of a grid above which one of half the step counts as no better. Where a surface
+/// is smooth a quarter is left.
+const STUCK: f64 = 0.6;
+
+/// Steps of bisection along an edge; what is left is a 65 536th of it.
+const BISECTIONS: usize = 16;
 
 /// Cells along the smallest leaf that are asked for at the start.
 const ALONG_LEAF: f64 = 6.0;
@@ -81,21 +89,24 @@ fn contoured<'b>(
             (along as u32, tolerance)
         }
     };
-    let mut best = None;
+    let mut best: Option<(Contour<'b>, f64)> = None;
     loop {
         let mut contour = Contour::new(body, Grid::around(bounds, along));
-        match (contour.run(), best) {
-            (true, _) if contour.error() <= tolerance || along == MOST_ALONG => return contour,
-            (true, _) => best = Some(contour),
-            // Too many faces: the last grid that stayed within the limit is kept.
-            (false, Some(last)) => return last,
-            (false, None) if along <= LEAST_ALONG => return contour,
-            (false, None) => {
-                along /= 2;
-                best = None;
-                continue;
+        if !contour.run() {
+            // Too many faces: the last grid that stayed within the limit is kept, or a coarser one tried.
+            match best {
+                Some((last, _)) => return last,
+                None if along <= LEAST_ALONG => return contour,
+                None => along /= 2,
             }
+            continue;
         }
+        let error = contour.error();
+        let stuck = best.as_ref().is_some_and(|(_, before)| error > STUCK * before);
+        if error <= tolerance || along == MOST_ALONG || stuck {
+            return contour;
+        }
+        best = Some((contour, error));
         along = (2 * along).min(MOST_ALONG);
     }
 }
@@ -199,7 +210,7 @@ impl<'b> Contour<'b> {
     fn find_crossing(&self, corner: IVec3, axis: usize, leaves: bool) -> (DVec3, DVec3, Tag) {
         let ends = [self.grid.corner(corner), self.grid.corner(corner + cell::unit(axis))];
         let [mut inner, mut outer] = if leaves { ends } else { [ends[1], ends[0]] };
-        for _ in 0..32 {
+        for _ in 0..BISECTIONS {
             let middle = 0.5 * (inner + outer);
             if self.body.value(middle).0 < 0.0 {
                 inner = middle;
