@@ -662,3 +662,35 @@ fn lines_and_points_of_meshes_are_drawn_among_the_faces() {
         assert_eq!(red, 4, "{shading:?}: a point of 2 x 2 pixels");
     }
 }
+
+#[test]
+fn surroundings_are_seen_along_the_projectors() {
+    let texels = (0..8u32).map(|i| [i as f32, 0.5, 1.0, 1.0]).collect();
+    let data = ImageData::RgbaF32 { width: 4, height: 2, texels };
+    let background = Background::Environment { image: ImageId(0), strength: 0.5, rotation: 0.3 };
+    let images = vec![TextureImage { name: String::new(), data }];
+    let mut scene = Scene { background, images, ..Scene::default() };
+    let image = draw(&scene, &eye(), Shading::Material, 9);
+    let device = senca_math::DeviceMap::to_pixels(9, 9).expect("a size");
+    for (x, y) in [(0, 0), (4, 4), (8, 2)] {
+        let ray = eye().ray_through(&device, senca_math::pixel_center(x, y)).expect("a ray");
+        let expected = scene.environment_color(ray.direction.as_vec3());
+        assert!((image.pixel(x, y)[0] - expected.r).abs() < 1e-4);
+        assert_eq!(image.pixel(x, y)[3], 1.0);
+    }
+    // Its mean colour is the ambient light.
+    let mean = senca_scene::Environment::of(&scene).expect("surroundings").mean();
+    place(&mut scene, square(1.0), DVec3::ZERO, matte(LinearRgb::WHITE));
+    let lit = draw(&scene, &window_view(), Shading::Material, 5).pixel(2, 2);
+    assert!((lit[1] - mean.g).abs() < 1e-5 && (lit[0] - mean.r).abs() < 1e-4);
+}
+
+#[test]
+fn glass_without_an_alpha_is_seen_through() {
+    let mut scene = Scene::default();
+    let glass = Material { transmission: LinearRgb::splat(0.75), ..unlit(LinearRgb::WHITE, 1.0) };
+    place(&mut scene, square(1.0), DVec3::Z, glass);
+    place(&mut scene, square(1.0), DVec3::ZERO, unlit(LinearRgb::new(1.0, 0.0, 0.0), 1.0));
+    let seen = draw(&scene, &window_view(), Shading::Material, 5).pixel(2, 2);
+    assert!((seen[0] - 1.0).abs() < 1e-5 && (seen[1] - 0.25).abs() < 1e-5, "{seen:?}");
+}
