@@ -3,9 +3,12 @@
 //! Pixels are taken tile by tile, tiles by all threads, samples of a pixel always in the same order,
 //! so the picture is the same for any number of threads. A film may be exposed in several goes
 //! ([`Film::expose`] with more and more samples): it keeps sums, and the sum of two goes is that of
-//! one.
+//! one. It can be written to a file in between and read again.
 
 mod adaptive;
+mod saved;
+#[cfg(test)]
+mod tests;
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -15,6 +18,8 @@ use senca_math::{Control, Image};
 
 use crate::antialias::{Antialiasing, Places};
 use crate::{Pattern, Sampler, TraceCounts, TraceError};
+
+pub use saved::{Fingerprint, SavedFilmError};
 
 /// Side of a tile in pixels.
 const TILE: u32 = 16;
@@ -205,14 +210,31 @@ impl Film {
         watch: &mut Watch<'_>,
         control: &Control<'_>,
     ) -> Result<FilmReport, TraceError> {
+        self.expose_up_to(u32::MAX, integrator, watch, control)
+    }
+
+    /// [`Film::expose`], but to no more than `most` samples of every pixel: for scenes that move between
+    /// samples.
+    ///
+    /// # Errors
+    /// As [`Film::expose`].
+    pub fn expose_up_to<I: Integrator>(
+        &mut self,
+        most: u32,
+        integrator: &I,
+        watch: &mut Watch<'_>,
+        control: &Control<'_>,
+    ) -> Result<FilmReport, TraceError> {
         let start = Instant::now();
-        let mut report = match Places::of(&self.settings.antialiasing) {
-            Some(places) => self.expose_in_passes(integrator, &places, watch, control)?,
-            None => self.expose_adaptively(integrator, control)?,
+        let exposed = match Places::of(&self.settings.antialiasing) {
+            Some(places) => self.expose_in_passes(most, integrator, &places, watch, control),
+            None => self.expose_adaptively(integrator, control),
         };
+        // After a cancel, too: the passes that were finished are worth keeping.
         if let Some(save) = &mut watch.save {
             save(self);
         }
+        let mut report = exposed?;
         let taken: u64 = self.sums.iter().map(|e| u64::from(e.count)).sum();
         let pixels = self.sums.len().max(1) as u64;
         report.samples_per_pixel = ((taken + pixels / 2) / pixels) as u32;
@@ -224,13 +246,14 @@ impl Film {
     /// All samples at once, or one after the other where the caller wants to interrupt.
     fn expose_in_passes<I: Integrator>(
         &mut self,
+        most: u32,
         integrator: &I,
         places: &Places,
         watch: &mut Watch<'_>,
         control: &Control<'_>,
     ) -> Result<FilmReport, TraceError> {
         let (start, mut saved) = (Instant::now(), Instant::now());
-        let wanted = self.settings.antialiasing.samples();
+        let wanted = self.settings.antialiasing.samples().min(most);
         let first = self.samples;
         let step = if watch.time_limit.is_some() || watch.save.is_some() { 1 } else { wanted };
         let mut report = FilmReport::default();

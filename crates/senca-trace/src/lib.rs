@@ -13,26 +13,27 @@ mod primary;
 mod ray;
 pub mod recursive;
 mod sampler;
+#[cfg(test)]
+mod test_support;
 pub mod textbook;
 mod texture;
+pub mod tree;
 mod world;
 
 pub use accel::{Accel, AccelSettings};
 pub use counters::{Counters, RayCounts, TraceCounts};
 pub use error::TraceError;
+pub use film::{
+    Area, Film, FilmReport, FilmSettings, Fingerprint, Integrator, SamplePlace, SavedFilmError, Watch,
+};
 pub use intersect::{
     Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum,
     Implicit, Intersect, Operation, PatchSurface, PlaneSurface, Polygon, Prism, Revolution, RootMethod,
     Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
 };
-#[cfg(test)]
-mod test_support;
-
-pub use film::{Area, Film, FilmReport, FilmSettings, Integrator, SamplePlace, Watch};
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use path::PathSettings;
 pub use primary::PrimaryRays;
-
 pub use ray::Ray;
 pub use recursive::RecursiveSettings;
 pub use sampler::{Pattern, Sampler};

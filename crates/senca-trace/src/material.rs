@@ -117,9 +117,7 @@ impl<'s> MaterialTable<'s> {
             multiply_base(&mut point.reflection, at.color);
             point.coverage *= at.color.w;
         }
-        // What transmits is there all over: its alpha is for renderers without transmitted rays.
-        let transmits = entry.alpha_mode == AlphaMode::Blend && point.transmission != LinearRgb::BLACK;
-        point.coverage = if transmits { 1.0 } else { coverage(entry.alpha_mode, point.coverage) };
+        point.coverage = coverage(entry.alpha_mode, point.coverage);
         point
     }
 
@@ -272,7 +270,8 @@ impl<'s> Binder<'s> {
         let constant = constant_of(material, reflection, alpha);
         Entry {
             constant,
-            alpha_mode: material.alpha_mode,
+            // Where light goes through, transmission alone says how much: see `Material::tracer_alpha`.
+            alpha_mode: if material.is_transmissive() { AlphaMode::Opaque } else { material.alpha_mode },
             textured,
             base,
             second,

@@ -2,7 +2,7 @@
 
 use senca_math::glam::DVec3;
 use senca_math::{LinearRgb, View, ViewKind};
-use senca_scene::{Background, Fog};
+use senca_scene::{Background, Fog, Lens};
 use senca_shading::fog_share;
 
 use super::PathSettings;
@@ -148,11 +148,18 @@ impl<'w> PathTracer<'w> {
         inside.iter().fold(Media::default(), |media, (_, medium)| media.entered(*medium))
     }
 
+    /// The same through a lens: what is not at its focus distance is blurred.
+    #[must_use]
+    pub fn with_lens(mut self, view: &View, lens: Option<Lens>) -> Self {
+        self.rays = self.rays.with_lens(view, lens);
+        self
+    }
+
     /// Light that one path brings to the eye from a place of the picture, times the share of the place
     /// that is covered, and that share. Finite and not negative.
     #[must_use]
     pub fn sample(&self, place: &SamplePlace, work: &mut PathWork) -> [f32; 4] {
-        let ray = self.rays.through(place.x, place.y);
+        let ray = self.rays.sample(place);
         let path = self.trace(&ray, &place.sampler, work);
         let mut light = path.light;
         if path.missed {

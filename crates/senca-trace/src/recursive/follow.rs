@@ -10,7 +10,7 @@ use super::recorder::{Met, Recorder, ShadowRay, Unrecorded, Unsent};
 use super::reflector::Reflector;
 use super::{Backs, Tracer};
 use crate::film::{Integrator, SamplePlace};
-use crate::{Interaction, MaterialPoint, Ray, Sampler, TraceCounts};
+use crate::{Interaction, MaterialPoint, Pattern, Ray, Sampler, TraceCounts};
 
 /// Rays of one tree at most, so that any depth ends. A mirror box of depth 10^6 stays below.
 pub const MAX_RAYS_PER_SAMPLE: u32 = 1 << 20;
@@ -25,11 +25,14 @@ const FIRST_LIGHT_DIMENSION: u32 = 16;
 /// Places of an area light at most.
 const MAX_PLACES: u32 = 1 << 12;
 
-/// What kind of ray it is.
+/// What a ray of a tree is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RayKind {
+pub enum RayKind {
+    /// From the eye.
     Primary,
+    /// Mirrored.
     Reflected,
+    /// Through a body.
     Transmitted,
     /// Goes on behind a surface that is there in part only.
     SeenThrough,
@@ -68,9 +71,22 @@ struct Sum {
     alpha: f32,
 }
 
+/// Where a tree begins.
+#[derive(Clone, Copy, Debug)]
+struct Root {
+    ray: Ray,
+    media: Media,
+    /// From the eye to the ray's origin.
+    distance: f64,
+    /// Row of the picture, where the ray belongs to one.
+    row: Option<u32>,
+    sampler: Sampler,
+}
+
 /// A tree of rays being followed.
 struct Tree<'a, R> {
-    place: &'a SamplePlace,
+    row: Option<u32>,
+    sampler: Sampler,
     work: &'a mut Work,
     recorder: &'a mut R,
     /// Number of the ray being followed.
@@ -116,19 +132,36 @@ impl Tracer<'_> {
         work: &mut Work,
         recorder: &mut R,
     ) -> [f32; 4] {
-        let (ray, media, distance) = self.primary(place.x, place.y, &mut work.counts.work);
+        let (ray, media, distance) = self.primary(place, &mut work.counts.work);
+        let root = Root { ray, media, distance, row: Some(place.row), sampler: place.sampler };
+        self.tree(root, work, recorder)
+    }
+
+    /// Light that comes to the origin of `ray` (of unit direction) along it, and the share that is
+    /// covered: [`Tracer::ray_trac`] for one who needs it fast, or deep.
+    #[must_use]
+    pub fn light_along(&self, ray: Ray, work: &mut Work) -> [f32; 4] {
+        let sampler = Sampler::new(Pattern::Sobol, self.settings.seed, 0, 0, 0);
+        let media = self.media_at(ray.origin, &mut work.counts.work);
+        let root = Root { ray, media, distance: 0.0, row: None, sampler };
+        self.tree(root, work, &mut Unrecorded)
+    }
+
+    /// Follows a ray and all that come of it.
+    fn tree<R: Recorder>(&self, root: Root, work: &mut Work, recorder: &mut R) -> [f32; 4] {
         work.pending.clear();
         work.pending.push(Pending {
-            ray,
+            ray: root.ray,
             kind: RayKind::Primary,
             nest: 0,
             weight: LinearRgb::WHITE,
             open: 1.0,
-            media,
-            distance,
+            media: root.media,
+            distance: root.distance,
             parent: u32::MAX,
         });
-        let mut tree = Tree { place, work, recorder, number: 0, sum: Sum::default() };
+        let Root { row, sampler, .. } = root;
+        let mut tree = Tree { row, sampler, work, recorder, number: 0, sum: Sum::default() };
         while let Some(pending) = tree.work.pending.pop() {
             if tree.number == MAX_RAYS_PER_SAMPLE {
                 break;
@@ -161,12 +194,13 @@ impl Tracer<'_> {
         let clear = self.clear_share(pending.distance, *t);
         let fog = self.fog.map_or(LinearRgb::BLACK, |fog| reached * fog.color * (1.0 - clear));
         let weight = reached * clear;
+        if R::RECORDS {
+            tree.recorder.meets(tree.number, &Met { t: *t, at, material, fog, weight });
+        }
         let local = self.local(&seen, tree);
+        tree.recorder.local(tree.number, local);
         tree.sum.light += weight * local + fog;
         tree.sum.alpha += pending.open * material.coverage;
-        if R::RECORDS {
-            tree.recorder.meets(tree.number, &Met { t: *t, at, material, local, fog, weight });
-        }
         self.send_on(&pending, &seen, weight, tree);
     }
 
@@ -206,14 +240,12 @@ impl Tracer<'_> {
 
     /// The ray sees nothing but the background.
     fn leave<R: Recorder>(&self, pending: &Pending, tree: &mut Tree<'_, R>) {
-        let straight = pending.open > 0.0;
-        let seen = if straight {
-            let color = self.sky.in_row(tree.place.row, pending.ray.direction);
-            tree.sum.alpha += if color.is_some() { pending.open } else { 0.0 };
-            color.unwrap_or(LinearRgb::BLACK)
-        } else {
-            self.sky.towards(pending.ray.direction)
+        let direction = pending.ray.direction;
+        let seen = match tree.row.filter(|_| pending.open > 0.0) {
+            Some(row) => self.sky.in_row(row, direction).unwrap_or(LinearRgb::BLACK),
+            None => self.sky.towards(direction),
         };
+        tree.sum.alpha += if self.sky.is_transparent() { 0.0 } else { pending.open };
         let weight = pending.weight * self.absorbed(&pending.media, f64::INFINITY);
         tree.sum.light += weight * seen;
         if R::RECORDS {
@@ -234,7 +266,7 @@ impl Tracer<'_> {
     /// Source: course text, section 3.1, equation 3.2.
     #[inline]
     fn local<R: Recorder>(&self, seen: &Seen, tree: &mut Tree<'_, R>) -> LinearRgb {
-        let Seen { t, at, material } = seen;
+        let Seen { at, material, .. } = seen;
         let reflector = Reflector::new(material, at.to_viewer.as_vec3(), self.settings.light_model);
         let mut sum = material.emission + reflector.ambient(self.ambient, material.occlusion);
         if !reflector.is_lit() {
@@ -245,9 +277,7 @@ impl Tracer<'_> {
             let per_side = self.settings.soft_shadows;
             for index in 0..light.places(per_side) {
                 let sampler = self.sampler_of_light(tree, number, index);
-                let Some((light, to_light)) = light.place(index, per_side, sampler, at.point) else {
-                    continue;
-                };
+                let (light, to_light) = light.place(index, per_side, sampler, at.point);
                 let Some(incident) = light.incident(position) else { continue };
                 let reflected = reflector.reflected(&incident);
                 if reflected == LinearRgb::BLACK {
@@ -257,7 +287,7 @@ impl Tracer<'_> {
                     sum += reflected;
                     continue;
                 }
-                let ray = self.shadow_ray(at, *t, &to_light);
+                let ray = self.shadow_ray(at, to_light);
                 tree.work.counts.rays.shadow += 1;
                 let share = self.visibility(&ray, &mut tree.work.counts.work);
                 sum += reflected * share;
@@ -277,7 +307,7 @@ impl Tracer<'_> {
     /// Random numbers for one place of one light, seen from where the ray being followed ends.
     #[inline]
     fn sampler_of_light<R>(&self, tree: &Tree<'_, R>, light: usize, place: u32) -> Sampler {
-        let mut sampler = tree.place.sampler;
+        let mut sampler = tree.sampler;
         let number = tree.number.wrapping_mul(self.lights.len() as u32).wrapping_add(light as u32);
         sampler.set_dimension(
             FIRST_LIGHT_DIMENSION.wrapping_add(number.wrapping_mul(MAX_PLACES)).wrapping_add(place),
@@ -311,8 +341,7 @@ impl Tracer<'_> {
                 tree.recorder.unsent(tree.number, Unsent::Negligible);
                 continue;
             }
-            let t_min = self.first_t(at.point, at.normal, *t, direction);
-            let ray = Ray { origin: at.point, direction, t_min, t_max: f64::INFINITY };
+            let ray = self.world.spawn(at, direction);
             let (nest, distance) = (pending.nest + 1, pending.distance + t);
             send(tree, Pending { ray, kind, nest, weight, open: 0.0, media, distance, parent: tree.number });
         }

@@ -30,11 +30,13 @@ enum Form {
     Area(DMat4),
 }
 
-/// Where a shadow ray goes: unit direction and length.
+/// Where a shadow ray goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ToLight {
-    pub(crate) direction: DVec3,
-    pub(crate) length: f64,
+pub(crate) enum ToLight {
+    /// To a place.
+    Place(DVec3),
+    /// Without end, along a unit vector.
+    Far(DVec3),
 }
 
 /// The lights that the nodes of `scene` place, in the order of nodes, and all ambient light.
@@ -92,13 +94,13 @@ impl TracedLight {
         per_side: u32,
         sampler: Sampler,
         point: DVec3,
-    ) -> Option<(ShadingLight, ToLight)> {
+    ) -> (ShadingLight, ToLight) {
         match self.form {
-            Form::Place(place) => Some((self.light, towards(point, place)?)),
-            Form::Far(direction) => Some((self.light, ToLight { direction, length: f64::INFINITY })),
+            Form::Place(place) => (self.light, ToLight::Place(place)),
+            Form::Far(direction) => (self.light, ToLight::Far(direction)),
             Form::Plane { place, axis } => {
                 let length = (point - place).dot(axis);
-                Some((self.light, ToLight { direction: -axis, length }))
+                (self.light, ToLight::Place(point - length * axis))
             }
             Form::Area(world_from_square) => {
                 let place = area_place(&world_from_square, index, per_side, sampler);
@@ -106,7 +108,7 @@ impl TracedLight {
                 let light =
                     ShadingLight { position: place.as_vec3(), color: self.light.color * share, ..self.light };
                 debug_assert!(light.lamp == Lamp::Patch, "area lights shine as plane lamps");
-                Some((light, towards(point, place)?))
+                (light, ToLight::Place(place))
             }
         }
     }
@@ -119,14 +121,6 @@ fn area_place(world_from_square: &DMat4, index: u32, n: u32, mut sampler: Sample
     let along = |cell: u32, within: f64| (f64::from(cell) + within) / f64::from(n) - 0.5;
     let place = DVec3::new(along(index % n, within[0]), along(index / n, within[1]), 0.0);
     world_from_square.transform_point3(place)
-}
-
-/// The way from one point to another; `None` where they are one.
-#[inline]
-fn towards(from: DVec3, to: DVec3) -> Option<ToLight> {
-    let way = to - from;
-    let length = way.length();
-    (length > 0.0).then(|| ToLight { direction: way / length, length })
 }
 
 #[cfg(test)]
@@ -151,12 +145,13 @@ mod tests {
     #[test]
     fn ways_end_at_the_light() {
         let point = DVec3::new(0.0, 0.0, -4.0);
-        let way = |kind| only(kind).place(0, 0, sampler(), point).expect("a way").1;
-        assert_eq!(way(LightKind::Point), ToLight { direction: DVec3::Z, length: 4.0 });
-        assert_eq!(way(LightKind::Parallel).length, f64::INFINITY);
+        let way = |kind| only(kind).place(0, 0, sampler(), point).1;
+        assert_eq!(way(LightKind::Point), ToLight::Place(DVec3::ZERO));
+        assert_eq!(way(LightKind::Parallel), ToLight::Far(DVec3::Z));
         let prism = LightKind::BoxSpot { min: [-1.0; 2], max: [1.0; 2], depth: 9.0 };
-        assert_eq!(way(prism), ToLight { direction: DVec3::Z, length: 4.0 });
-        assert_eq!(way(LightKind::Area { size: [2.0; 2] }), ToLight { direction: DVec3::Z, length: 4.0 });
+        let aside = only(prism).place(0, 0, sampler(), point + DVec3::X).1;
+        assert_eq!(aside, ToLight::Place(DVec3::X));
+        assert_eq!(way(LightKind::Area { size: [2.0; 2] }), ToLight::Place(DVec3::ZERO));
     }
 
     #[test]
@@ -165,7 +160,7 @@ mod tests {
         assert_eq!((light.places(3), only(LightKind::Point).places(3)), (9, 1));
         assert_eq!(light.name, "lamp");
         for index in 0..9 {
-            let (at, _) = light.place(index, 3, sampler(), DVec3::NEG_Z).expect("a place");
+            let (at, _) = light.place(index, 3, sampler(), DVec3::NEG_Z);
             let cell = |v: f32, length: f32| ((v / length + 0.5) * 3.0) as u32;
             assert_eq!((cell(at.position.x, 2.0), cell(at.position.y, 4.0)), (index % 3, index / 3));
             assert!((at.color.r - 1.0 / 9.0).abs() < 1e-7);

@@ -18,7 +18,7 @@
 //! - A parallel light has no distance: anything before the place that way blocks it.
 //! - Surfaces with an alpha of their own are seen through by that share, and throw that much less
 //!   shadow.
-//! - A ray starts off its surface by [`RecursiveSettings::epsilon`].
+//! - A ray starts a little beside its surface: see [`World::spawn`].
 //!
 //! # Limits
 //!
@@ -32,7 +32,7 @@ mod lamps;
 pub(crate) mod media;
 pub mod optics;
 mod plain;
-mod recorder;
+pub(crate) mod recorder;
 mod reflector;
 mod settings;
 mod shadow;
@@ -41,22 +41,16 @@ mod tests;
 
 use senca_math::glam::DVec3;
 use senca_math::{Aabb, LinearRgb, View, ViewKind};
-use senca_scene::{AlphaMode, Background, Fog};
+use senca_scene::{AlphaMode, Background, Fog, Lens};
 
-use crate::{Counters, Crossings, MaterialTable, PrimaryRays, Ray, World};
+use crate::{Counters, Crossings, MaterialTable, PrimaryRays, Ray, SamplePlace, World};
 use background::Sky;
 use lamps::{TracedLight, lights_of};
 use media::{Media, Medium};
 
-pub use follow::{MAX_RAYS_PER_SAMPLE, Work};
+pub(crate) use follow::Pending;
+pub use follow::{MAX_RAYS_PER_SAMPLE, RayKind, Work};
 pub use settings::{Backs, LightModel, RecursiveSettings};
-
-/// Rounding of a place that a ray starts from, as a share of the size of its coordinates and of the
-/// way that led there. Triangles are met in single precision, whose steps are 1.2e-7.
-const ROUNDING: f64 = 2e-6;
-
-/// Least cosine between a ray and the surface it starts from that counts in [`ROUNDING`].
-const GRAZING: f64 = 0.05;
 
 /// A scene with all that is needed to follow rays into it. Shared by all threads.
 #[derive(Debug)]
@@ -122,6 +116,13 @@ impl<'w> Tracer<'w> {
         tracer
     }
 
+    /// The same through a lens: what is not at its focus distance is blurred.
+    #[must_use]
+    pub fn with_lens(mut self, lens: Option<Lens>) -> Self {
+        self.rays = self.rays.with_lens(&self.view, lens);
+        self
+    }
+
     /// The world.
     #[must_use]
     pub fn world(&self) -> &'w World<'w> {
@@ -161,9 +162,10 @@ impl<'w> Tracer<'w> {
         inside.iter().fold(Media::default(), |media, (_, medium)| media.entered(*medium))
     }
 
-    /// The primary ray through a place of the picture.
-    fn primary(&self, x: f64, y: f64, counters: &mut Counters) -> (Ray, Media, f64) {
-        let ray = self.rays.through(x, y);
+    /// The primary ray through a place of the picture, the bodies it starts in, and its distance from the
+    /// eye.
+    fn primary(&self, place: &SamplePlace, counters: &mut Counters) -> (Ray, Media, f64) {
+        let ray = self.rays.sample(place);
         match self.view.kind {
             ViewKind::Central { .. } => (ray, self.media_at_eye, 0.0),
             ViewKind::Parallel { .. } => {
@@ -171,18 +173,6 @@ impl<'w> Tracer<'w> {
                 let any = self.bodies.iter().any(|body| *body);
                 let media = if any { self.media_at(ray.origin, counters) } else { Media::default() };
                 (ray, media, depth)
-            }
-        }
-    }
-
-    /// Least t of a ray along `direction` that starts from a place that was met at parameter `t`.
-    #[inline]
-    fn first_t(&self, point: DVec3, normal: DVec3, t: f64, direction: DVec3) -> f64 {
-        match self.settings.epsilon {
-            Some(epsilon) => epsilon,
-            None => {
-                let size = point.abs().max_element() + t;
-                ROUNDING * size / normal.dot(direction).abs().max(GRAZING)
             }
         }
     }

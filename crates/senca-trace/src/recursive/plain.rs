@@ -20,7 +20,6 @@ struct Call {
     media: Media,
     /// From the eye to the origin.
     distance: f64,
-    t_min: f64,
 }
 
 impl Tracer<'_> {
@@ -37,22 +36,15 @@ impl Tracer<'_> {
         counts: &mut TraceCounts,
     ) -> LinearRgb {
         let media = self.media_at(origin, &mut counts.work);
-        let call = Call { product: LinearRgb::WHITE, media, distance: 0.0, t_min: 0.0 };
-        self.call(origin, direction, nest, &call, counts)
+        let call = Call { product: LinearRgb::WHITE, media, distance: 0.0 };
+        self.call(Ray::new(origin, direction), nest, &call, counts)
     }
 
-    fn call(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        nest: u32,
-        call: &Call,
-        counts: &mut TraceCounts,
-    ) -> LinearRgb {
+    fn call(&self, mut ray: Ray, nest: u32, call: &Call, counts: &mut TraceCounts) -> LinearRgb {
         if nest > self.settings.max_depth.min(DEEPEST_CALL) {
             return LinearRgb::BLACK;
         }
-        let mut ray = Ray { t_min: call.t_min, ..Ray::new(origin, direction) };
+        let direction = ray.direction;
         let Some(seen) = self.see(&mut ray, counts) else {
             return self.sky.towards(direction) * self.absorbed(&call.media, f64::INFINITY);
         };
@@ -66,9 +58,8 @@ impl Tracer<'_> {
             if self.is_negligible(product) {
                 return LinearRgb::BLACK;
             }
-            let t_min = self.first_t(seen.at.point, seen.at.normal, seen.t, child.direction);
-            let call = Call { product, media: child.media, distance: call.distance + seen.t, t_min };
-            child.share * self.call(seen.at.point, child.direction, nest + 1, &call, counts)
+            let call = Call { product, media: child.media, distance: call.distance + seen.t };
+            child.share * self.call(self.world.spawn(&seen.at, child.direction), nest + 1, &call, counts)
         };
         let reflected = follow(children.reflected);
         let transmitted = follow(children.transmitted);
@@ -79,14 +70,14 @@ impl Tracer<'_> {
 
     /// I_l of equation 3.2.
     fn local_light(&self, seen: &Seen, counts: &mut TraceCounts) -> LinearRgb {
-        let Seen { t, at, material } = seen;
+        let Seen { at, material, .. } = seen;
         let reflector = Reflector::new(material, at.to_viewer.as_vec3(), self.settings.light_model);
         let mut sum = material.emission + reflector.ambient(self.ambient, material.occlusion);
         let sampler = Sampler::new(Pattern::Sobol, 0, 0, 0, 0);
         for light in &self.lights {
-            let Some((light, to_light)) = light.place(0, 0, sampler, at.point) else { continue };
+            let (light, to_light) = light.place(0, 0, sampler, at.point);
             let Some(incident) = light.incident(at.point.as_vec3()) else { continue };
-            let shadow_ray = self.shadow_ray(at, *t, &to_light);
+            let shadow_ray = self.shadow_ray(at, to_light);
             let visible = match self.settings.shadows {
                 true => self.visibility(&shadow_ray, &mut counts.work),
                 false => LinearRgb::WHITE,

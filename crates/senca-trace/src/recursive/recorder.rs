@@ -26,6 +26,11 @@ pub(crate) trait Recorder {
         let _ = (number, at);
     }
 
+    /// The light of the lamps and of the surface there is known.
+    fn local(&mut self, number: u32, local: LinearRgb) {
+        let _ = (number, local);
+    }
+
     /// A shadow ray goes from there to a light.
     fn shadow(&mut self, number: u32, shadow: &ShadowRay) {
         let _ = (number, shadow);
@@ -43,11 +48,9 @@ pub(crate) struct Met<'a> {
     pub(crate) t: f64,
     pub(crate) at: &'a Interaction,
     pub(crate) material: &'a MaterialPoint,
-    /// Light of the lamps and of the surface itself.
-    pub(crate) local: LinearRgb,
     /// Light that fog adds before the surface, already weighted.
     pub(crate) fog: LinearRgb,
-    /// Share of `local` in the picture.
+    /// Share of the place's own light in the picture.
     pub(crate) weight: LinearRgb,
 }
 

@@ -13,9 +13,6 @@ pub struct RecursiveSettings {
     /// Adaptive depth (course text, section 3.3): rays whose product of coefficients from the root on
     /// is below this are not sent. Default 1/255, the step of an 8-bit picture; 0 for a fixed depth.
     pub adaptive_depth: f32,
-    /// The small number that t must exceed, in world units, > 0. Default: chosen by the size of the
-    /// coordinates at the place where a ray starts.
-    pub epsilon: Option<f64>,
     /// How places reflect the light of lamps. Default [`LightModel::Material`].
     pub light_model: LightModel,
     /// Whether bodies cast shadows. Default true.
@@ -65,7 +62,6 @@ impl Default for RecursiveSettings {
         Self {
             max_depth: 8,
             adaptive_depth: 1.0 / 255.0,
-            epsilon: None,
             light_model: LightModel::default(),
             shadows: true,
             soft_shadows: 4,
@@ -86,9 +82,6 @@ impl RecursiveSettings {
         let wrong = |name, value, expected| Err(TraceError::Setting { name, value, expected });
         if !(0.0..=1.0).contains(&self.adaptive_depth) {
             return wrong("adaptive_depth", self.adaptive_depth.into(), "0 to 1");
-        }
-        if let Some(epsilon) = self.epsilon.filter(|e| !(*e > 0.0 && e.is_finite())) {
-            return wrong("epsilon", epsilon, "above 0 and finite");
         }
         if !(0..=MAX_SOFT_SHADOWS).contains(&self.soft_shadows) {
             return wrong("soft_shadows", self.soft_shadows.into(), "0 to 64");

@@ -11,11 +11,13 @@ use crate::{Counters, Hit, Interaction, Ray};
 const MAX_TINTING: usize = 256;
 
 impl Tracer<'_> {
-    /// The shadow ray from a place, which was met at parameter `t`, to a light: the part between them.
+    /// The shadow ray from a place to a light: the part between them.
     #[inline]
-    pub(super) fn shadow_ray(&self, at: &Interaction, t: f64, to_light: &ToLight) -> Ray {
-        let first = self.first_t(at.point, at.normal, t, to_light.direction);
-        Ray { origin: at.point, direction: to_light.direction, t_min: first, t_max: to_light.length }
+    pub(super) fn shadow_ray(&self, at: &Interaction, to_light: ToLight) -> Ray {
+        match to_light {
+            ToLight::Place(place) => self.world.spawn_to(at, place),
+            ToLight::Far(direction) => self.world.spawn(at, direction),
+        }
     }
 
     /// S_i: the share of a light that arrives over a shadow ray, 0 or 1 where nothing tints it.
@@ -49,11 +51,12 @@ impl Tracer<'_> {
     fn tinted(&self, ray: &Ray, counters: &mut Counters) -> LinearRgb {
         let mut ray = *ray;
         let mut left = LinearRgb::WHITE;
+        let length = ray.direction.length();
         let mut entered = 0.0;
         for _ in 0..MAX_TINTING {
             let Some(hit) = self.world.closest(&ray, counters) else { return left };
             let t = hit.crossing.t;
-            left = left * self.let_through(&ray, &hit, t - entered);
+            left = left * self.let_through(&ray, &hit, (t - entered) * length);
             if left == LinearRgb::BLACK {
                 return left;
             }
