@@ -2,7 +2,7 @@
 
 use senca_math::ViewError;
 use senca_pipeline::RenderError;
-use senca_trace::TraceError;
+use senca_trace::{SavedFilmError, TraceError};
 
 /// Why [`render`](crate::render) gave no picture. Variants come in the order caller, input.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +33,9 @@ pub enum Error {
     /// The tracer gave no picture.
     #[error(transparent)]
     Trace(TraceError),
+    /// A partial picture cannot be gone on with.
+    #[error("{0}")]
+    Partial(SavedFilmError),
     /// The settings contradict each other.
     #[error("{0}")]
     Combination(String),
@@ -44,6 +47,16 @@ impl From<TraceError> for Error {
         match error {
             TraceError::Cancelled => Self::Render(RenderError::Cancelled),
             other => Self::Trace(other),
+        }
+    }
+}
+
+impl From<SavedFilmError> for Error {
+    /// Settings that are wrong are so with or without a partial picture.
+    fn from(error: SavedFilmError) -> Self {
+        match error {
+            SavedFilmError::Settings(error) => Self::Trace(error),
+            other => Self::Partial(other),
         }
     }
 }
@@ -66,7 +79,7 @@ impl Error {
         use RenderError::{Crop, EmptyImage, ImageTooLarge, Setting};
         match self {
             Self::UnknownCamera { .. } | Self::UnknownAnimation { .. } => true,
-            Self::View(_) => false,
+            Self::View(_) | Self::Partial(_) => false,
             Self::Trace(error) => matches!(error, TraceError::Setting { .. }),
             Self::Combination(_) => true,
             Self::Render(error) => {

@@ -9,6 +9,7 @@ use senca_scene::{
     AnimationId, Background, Camera, DEFAULT_YFOV, PlacedCamera, Projection, Scene, frame_bounds,
 };
 
+use crate::traced::{CameraOptics, optics_of};
 use crate::{Error, LookAt, Moment, Settings, Viewpoint};
 
 /// The box that pictures without a size fit into, in pixels.
@@ -23,6 +24,8 @@ pub struct Prepared<'s> {
     pub view: View,
     /// Width and height of the whole picture in pixels.
     pub size: [u32; 2],
+    /// What the camera has beyond its view.
+    pub camera: CameraOptics,
 }
 
 /// Brings the scene into its pose, finds the camera, and adds light where there is none. A scene that
@@ -45,7 +48,7 @@ pub fn prepare<'s>(scene: Cow<'s, Scene>, settings: &Settings) -> Result<Prepare
     if !scene.is_lit() {
         scene.to_mut().light_by_default(&placed.world_from_camera);
     }
-    Ok(Prepared { scene, view, size })
+    Ok(Prepared { scene, view, size, camera: optics_of(&placed.camera) })
 }
 
 /// The scene at the moment asked for, or in the pose of its file; meshes bent as their nodes say.

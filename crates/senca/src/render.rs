@@ -8,7 +8,8 @@ use senca_pipeline::Control;
 use senca_scene::{Background, Scene};
 
 use crate::prepare::{Prepared, default_background, prepare};
-use crate::{Error, Method, Settings, traced};
+use crate::traced::{TraceJob, trace_with};
+use crate::{Error, Method, Settings};
 
 /// Counters and times of one picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,16 +60,15 @@ pub fn render_with(
     settings: &Settings,
     control: &Control<'_>,
 ) -> Result<(Image, Report), Error> {
+    if settings.method != Method::Raster {
+        let traced = trace_with(scene, settings, control, &mut TraceJob::default())?;
+        return Ok((traced.image, traced.report));
+    }
     let start = Instant::now();
     let mut prepared = prepare(scene, settings)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
     let drawing = drawing_settings(&mut prepared, settings);
     let [width, height] = prepared.size;
-    if settings.method == Method::Trace {
-        let traced = traced::draw(&prepared, &drawing, &settings.tracing, control)?;
-        let report = Report { prepare_seconds, tracing: Some(traced.report), ..Report::default() };
-        return Ok((traced.image, report));
-    }
     let mut image = Image::new(width, height, [0.0; 4]);
     let report = senca_pipeline::render_with(&prepared.scene, &prepared.view, &drawing, &mut image, control)?;
     let image = match &settings.crop {

@@ -2,8 +2,9 @@
 
 use senca_math::glam::DVec3;
 use senca_pipeline::Crop;
-use senca_trace::RecursiveSettings;
 use senca_trace::antialias::Antialiasing;
+use senca_trace::path::PathSettings;
+use senca_trace::{RecursiveSettings, WorldSettings};
 use std::time::Duration;
 
 /// What is drawn, from where, when and how. The default draws the scene as it is: 1024 x 768 pixels
@@ -39,6 +40,8 @@ pub enum Method {
     Raster,
     /// Recursive ray tracing.
     Trace,
+    /// Path tracing: light from everywhere, at the price of noise that falls with samples.
+    Path,
 }
 
 /// How rays are traced.
@@ -46,8 +49,14 @@ pub enum Method {
 pub struct Tracing {
     /// How they are followed. Light model, backs and filter are taken from [`Settings::drawing`].
     pub recursive: RecursiveSettings,
+    /// How paths are followed. Backs and filter are taken from [`Settings::drawing`].
+    pub path: PathSettings,
+    /// Whether the picture is saved in part or resumed, so that a fingerprint of the scene is needed.
+    pub keeps_partial: bool,
     /// How pixels are sampled. Default: one ray through the middle.
     pub antialiasing: Antialiasing,
+    /// How rays find what they meet.
+    pub world: WorldSettings,
     /// Time after which no further sample is begun; every pixel gets one. Default: none.
     pub time_limit: Option<Duration>,
 }

@@ -12,5 +12,5 @@ pub(crate) mod values;
 pub(crate) use failure::Failure;
 pub(crate) use interrupt::Interrupt;
 pub(crate) use progress::Progress;
-pub(crate) use stats::{Seconds, Stages, Stats, Stopwatch, Triangles, peak_bytes};
+pub(crate) use stats::{Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles, peak_bytes};
 pub(crate) use threads::use_threads;

@@ -19,8 +19,74 @@ pub(crate) struct Stats {
     pub(crate) triangles: Triangles,
     /// Samples per pixel.
     pub(crate) samples: u32,
+    /// What following rays took, where they were.
+    #[serde(flatten)]
+    pub(crate) tracing: Option<TracingStats>,
     /// Most memory the process has held at once, in bytes; `null` where the system does not tell.
     pub(crate) peak_bytes: Option<u64>,
+}
+
+/// What following rays took.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct TracingStats {
+    /// Rays by kind.
+    pub(crate) rays: Rays,
+    /// Rays tested against surfaces.
+    pub(crate) tests: u64,
+    /// Rays tested against bounding volumes, and nodes visited.
+    pub(crate) nodes: u64,
+    /// Cells of a grid or octree that rays went through.
+    pub(crate) cells: u64,
+    /// Samples of all pixels.
+    pub(crate) samples_total: u64,
+    /// The same work for a ray.
+    pub(crate) per_ray: PerRay,
+}
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Rays {
+    pub(crate) primary: u64,
+    pub(crate) shadow: u64,
+    pub(crate) reflected: u64,
+    pub(crate) transmitted: u64,
+    pub(crate) bounce: u64,
+    pub(crate) total: u64,
+}
+
+/// Mean work for a ray.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct PerRay {
+    pub(crate) tests: f64,
+    pub(crate) nodes: f64,
+    pub(crate) cells: f64,
+}
+
+impl TracingStats {
+    /// Of a picture.
+    pub(crate) fn of(report: &senca::trace::FilmReport) -> Self {
+        let (rays, work) = (report.counts.rays, report.counts.work);
+        let per_ray = |count: u64| count as f64 / rays.total().max(1) as f64;
+        Self {
+            rays: Rays {
+                primary: rays.primary,
+                shadow: rays.shadow,
+                reflected: rays.reflected,
+                transmitted: rays.transmitted,
+                bounce: rays.bounce,
+                total: rays.total(),
+            },
+            tests: work.tests,
+            nodes: work.nodes,
+            cells: work.cells,
+            samples_total: report.samples,
+            per_ray: PerRay {
+                tests: per_ray(work.tests),
+                nodes: per_ray(work.nodes),
+                cells: per_ray(work.cells),
+            },
+        }
+    }
 }
 
 /// Wall-clock seconds per stage.
@@ -121,6 +187,18 @@ mod tests {
         );
         assert_eq!(keys(&json["seconds"]), ["load", "prepare", "render", "total", "write"]);
         assert_eq!(keys(&json["triangles"]), ["clipped", "culled", "drawn", "in"]);
+    }
+
+    #[test]
+    fn rays_are_told_where_there_are_any() {
+        let stats = Stats { tracing: Some(TracingStats::default()), ..Stats::default() };
+        let json = serde_json::to_value(stats).expect("plain data");
+        for key in ["rays", "tests", "nodes", "cells", "per_ray", "samples_total"] {
+            assert!(json.get(key).is_some(), "{key}");
+        }
+        for key in ["primary", "shadow", "reflected", "transmitted", "bounce"] {
+            assert_eq!(json["rays"][key], 0, "{key}");
+        }
     }
 
     #[cfg(target_os = "linux")]

@@ -1,6 +1,7 @@
 //! Values of options, read from their text.
 
 use std::str::FromStr;
+use std::time::Duration;
 
 use senca::math::glam::DVec3;
 use senca::math::{LinearRgb, Srgb8};
@@ -104,6 +105,65 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number from 0 to 1.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if (0.0..=1.0).contains(&v) => Ok(v),
+        _ => Err("a number from 0 to 1 is needed".into()),
+    }
+}
+
+/// A time with its unit: 30s, 1.5m, 2h.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let wrong = || "a time is written with its unit, such as 30s, 5m or 1h".to_owned();
+    let (number, unit) = text.split_at_checked(text.len().wrapping_sub(1)).ok_or_else(wrong)?;
+    let seconds = match unit {
+        "s" => 1.0,
+        "m" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = number.parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(number * seconds).map_err(|_| wrong())
+}
+
+/// What `--time` says: a moment of the animation, or with a unit how long to draw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Time {
+    /// Seconds of the animation.
+    Moment(f64),
+    /// How long to draw.
+    Limit(Duration),
+}
+
+/// A number of seconds of the animation, or a time with its unit.
+pub(crate) fn time(text: &str) -> Result<Time, String> {
+    if text.ends_with(['s', 'm', 'h']) {
+        return duration(text).map(Time::Limit);
+    }
+    let wrong = |_| "a moment is a number of seconds, at least 0; a limit has a unit, such as 30s".to_owned();
+    not_negative(text).map(Time::Moment).map_err(wrong)
+}
+
+/// Column and row of a pixel, written `X,Y`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Pixel {
+    pub(crate) x: u32,
+    pub(crate) y: u32,
+}
+
+impl FromStr for Pixel {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<u32>, _> = text.split(',').map(|t| t.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y]) => Ok(Self { x, y }),
+            _ => Err("a pixel is two whole numbers X,Y, such as 320,240".into()),
+        }
+    }
+}
+
 /// Stops of exposure, within +-64.
 pub(crate) fn stops(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -188,6 +248,19 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_are_moments_or_limits_by_their_unit() {
+        assert_eq!(time("1.5"), Ok(Time::Moment(1.5)));
+        assert_eq!(time("30s"), Ok(Time::Limit(Duration::from_secs(30))));
+        assert_eq!(duration("1.5m"), Ok(Duration::from_secs(90)));
+        for wrong in ["", "s", "30", "-1s", "nans", "1e99h", "5d", "ä"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
+        }
+        assert!(time("-1").is_err());
+        assert_eq!("3, 4".parse(), Ok(Pixel { x: 3, y: 4 }));
+        assert!("3".parse::<Pixel>().is_err() && share("1.5").is_err());
+    }
 
     #[test]
     fn sizes_are_read_and_refused_with_a_reason() {

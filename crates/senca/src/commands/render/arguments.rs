@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum, ValueHint};
-use senca::io::toml_scene::{RenderHints, ShadingHint};
+use senca::io::toml_scene::{MethodHint, RenderHints, ShadingHint};
 use senca::math::glam::DVec3;
 use senca::pipeline::Shading;
 use senca::scene::Filter;
-use senca::{LookAt, Method, Moment, Settings, Viewpoint, pipeline};
+use senca::{LookAt, Method, Moment, Settings, Tracing, Viewpoint, pipeline};
 
+use super::tracing::{AntialiasingChoice, TracingArguments, antialiasing};
 use crate::cli::Failure;
-use crate::cli::values::{BackgroundChoice, Crop, Size, not_negative, positive, stops, triple, view_angle};
+use crate::cli::values::{BackgroundChoice, Crop, Size, Time, positive, stops, time, triple, view_angle};
 
 /// What is drawn and how.
 #[derive(Args, Debug)]
@@ -25,6 +26,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) drawing: DrawingArguments,
     #[command(flatten)]
+    pub(crate) tracing: TracingArguments,
+    #[command(flatten)]
     pub(crate) view: ViewArguments,
     #[command(flatten)]
     pub(crate) running: RunningArguments,
@@ -35,6 +38,8 @@ Examples:
   senca render teapot.toml
   senca render bunny.obj -o bunny.png --size 1920x1080 --samples 8
   senca render house.dat --shading hidden-line -o house.svg
+  senca render balls.toml --method trace --aa adaptive
+  senca render balls.toml --method trace --pixel 320,240 --explain tree.svg
   senca render robot.glb --camera Front --time 1.5 -o - | display";
 
 /// Where the picture goes.
@@ -68,7 +73,7 @@ pub(crate) struct OutputArguments {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct DrawingArguments {
-    /// How the scene is drawn: raster or trace [default: the scene's, or raster]
+    /// How the scene is drawn: raster, trace or path [default: the scene's, or raster]
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub(crate) method: Option<Method>,
 
@@ -77,16 +82,18 @@ pub(crate) struct DrawingArguments {
     pub(crate) shading: Option<ShadingChoice>,
 
     /// Which rasterizer: the fast one, or the textbook's
-    #[arg(long, value_enum, value_name = "RASTER", default_value_t)]
-    pub(crate) raster: RasterChoice,
+    /// [default: tiled]
+    #[arg(long, value_enum, value_name = "RASTER")]
+    pub(crate) raster: Option<RasterChoice>,
 
-    /// Samples per pixel against jagged edges [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    /// Samples per pixel against jagged edges [default: the scene's, or 1; of paths, 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     pub(crate) samples: Option<u32>,
 
-    /// Antialiasing: none, or super for 4 samples a pixel unless --samples says how many
+    /// Antialiasing: none, or super for 4 samples a pixel unless --samples says how many; where rays
+    /// are followed, jitter, adaptive and filter, too
     #[arg(long, value_name = "AA", value_parser = antialiasing)]
-    pub(crate) aa: Option<Antialiasing>,
+    pub(crate) aa: Option<AntialiasingChoice>,
 
     /// How texels become colours [default: as the scene says]
     #[arg(long, value_enum, value_name = "FILTER")]
@@ -129,9 +136,10 @@ pub(crate) struct ViewArguments {
     #[arg(long, value_name = "DEGREES", value_parser = view_angle)]
     pub(crate) fov: Option<f64>,
 
-    /// Moment of the animation, in seconds [default: the pose of the file]
-    #[arg(long, value_name = "SECONDS", value_parser = not_negative)]
-    pub(crate) time: Option<f64>,
+    /// Moment of the animation, in seconds [default: the pose of the file]; with a unit, as in 30s, the
+    /// same as --time-limit
+    #[arg(long, value_name = "SECONDS", value_parser = time)]
+    pub(crate) time: Option<Time>,
 
     /// Animation to run, by name [default: the first]
     #[arg(long, value_name = "NAME", requires = "time")]
@@ -146,7 +154,7 @@ pub(crate) struct RunningArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// Seed of random numbers; the raster method draws none, so it changes nothing here
+    /// Seed of random numbers; the raster method draws none
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
 
@@ -164,30 +172,11 @@ fn method(text: &str) -> Result<Method, String> {
     match text {
         "raster" => Ok(Method::Raster),
         "trace" => Ok(Method::Trace),
+        "path" => Ok(Method::Path),
         "radiosity" => {
-            Err(format!("drawing by {text} is not built into this version; it has: raster, trace"))
+            Err(format!("drawing by {text} is not built into this version; it has: raster, trace, path"))
         }
-        _ => Err("the methods of this version are: raster, trace".to_owned()),
-    }
-}
-
-/// The ways against jagged edges that are built in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Antialiasing {
-    /// One sample in the middle of each pixel.
-    None,
-    /// Several samples a pixel.
-    Super,
-}
-
-fn antialiasing(text: &str) -> Result<Antialiasing, String> {
-    match text {
-        "none" => Ok(Antialiasing::None),
-        "super" => Ok(Antialiasing::Super),
-        "jitter" | "adaptive" => Err(format!(
-            "{text} belongs to methods that are not built into this version; it has: none, super"
-        )),
-        _ => Err("antialiasing is none or super".to_owned()),
+        _ => Err("the methods are: raster, trace, path".to_owned()),
     }
 }
 
@@ -254,12 +243,19 @@ const MOST_SAMPLES: u32 = 256;
 
 impl Arguments {
     /// The library's settings for these options; `hints` are what the scene file says where they say
-    /// nothing, and `shading` is what the picture's format asks for.
+    /// nothing, `shading` is what the picture's format asks for, and `lines` whether it holds nothing but
+    /// lines.
     pub(super) fn settings(
         &self,
         hints: &RenderHints,
         shading: Option<Shading>,
+        lines: bool,
     ) -> Result<Settings, Failure> {
+        let method = self.method(hints, lines);
+        if lines && method != Method::Raster {
+            return Err(Failure::usage("svg holds line drawings, which the method raster makes; write png"));
+        }
+        self.tracing.check(method)?;
         let hinted = self.view.viewpoint().or_else(|| hints.camera.clone().map(Viewpoint::Camera));
         Ok(Settings {
             size: self.output.size.map(|s| [s.width, s.height]).or(hints.size),
@@ -267,15 +263,54 @@ impl Arguments {
             viewpoint: hinted.unwrap_or_default(),
             yfov: self.view.fov.map(f64::to_radians),
             moment: self.view.moment(hints.time),
-            method: self.drawing.method.unwrap_or_default(),
-            tracing: senca::Tracing::default(),
+            method,
+            tracing: self.tracing(method, hints)?,
             drawing: pipeline::Settings {
-                shading: self.drawing.shading.map(Into::into).or(shading).unwrap_or_default(),
-                samples: self.drawing.samples_per_pixel(hints.samples)?,
+                shading: self.shading(method, shading)?,
+                samples: self.drawing.samples_per_pixel(method, hints.samples)?,
                 background: self.output.background.map(Into::into),
                 ..self.drawing.settings()
             },
         })
+    }
+
+    /// The method: the option's, or the scene's.
+    fn method(&self, hints: &RenderHints, lines: bool) -> Method {
+        let hinted = match hints.method {
+            Some(MethodHint::Trace) => Method::Trace,
+            Some(MethodHint::Path) => Method::Path,
+            Some(MethodHint::Raster | MethodHint::Radiosity) | None => Method::Raster,
+        };
+        // Lines and one rasterizer or the other ask for raster, whatever the scene says.
+        let lines = lines || self.drawing.shading.is_some_and(|s| Shading::from(s).is_lines());
+        let implied = (lines || self.drawing.raster.is_some()).then_some(Method::Raster);
+        self.drawing.method.or(implied).unwrap_or(hinted)
+    }
+
+    /// The shading; rays are shaded by the models of materials or all by the books', so what a scene
+    /// says for the pipeline is passed over where it is neither.
+    fn shading(&self, method: Method, hinted: Option<Shading>) -> Result<Shading, Failure> {
+        if method != Method::Raster && self.drawing.raster.is_some() {
+            return Err(Failure::usage("--raster belongs to the method raster; leave out one of them"));
+        }
+        let asked = self.drawing.shading.map(Shading::from);
+        let fits = |shading: &Shading| {
+            method == Method::Raster || matches!(shading, Shading::Phong | Shading::Material)
+        };
+        Ok(asked.or(hinted.filter(fits)).unwrap_or_default())
+    }
+
+    /// The settings for rays; those of the method raster are not looked at.
+    fn tracing(&self, method: Method, hints: &RenderHints) -> Result<Tracing, Failure> {
+        if method == Method::Raster {
+            return Ok(Tracing::default());
+        }
+        let limit = match self.view.time {
+            Some(Time::Limit(limit)) => Some(limit),
+            _ => self.tracing.time_limit,
+        };
+        let (aa, samples, seed) = (self.drawing.aa, self.drawing.samples, self.running.seed);
+        self.tracing.settings(method, aa, samples, limit, seed, hints)
     }
 }
 
@@ -302,7 +337,11 @@ impl ViewArguments {
     }
 
     fn moment(&self, hint: Option<f64>) -> Option<Moment> {
-        let seconds = self.time.or(hint)?;
+        let asked = match self.time {
+            Some(Time::Moment(seconds)) => Some(seconds),
+            Some(Time::Limit(_)) | None => None,
+        };
+        let seconds = asked.or(hint)?;
         Some(Moment { seconds, animation: self.animation.clone() })
     }
 }
@@ -312,7 +351,7 @@ impl DrawingArguments {
     fn settings(&self) -> pipeline::Settings {
         let standard = pipeline::Settings::default();
         pipeline::Settings {
-            raster: self.raster.into(),
+            raster: self.raster.unwrap_or_default().into(),
             cull: self.cull.into(),
             tolerance_px: self.tolerance,
             filter: self.texture_filter.map(Into::into),
@@ -320,14 +359,25 @@ impl DrawingArguments {
         }
     }
 
-    fn samples_per_pixel(&self, hint: Option<u32>) -> Result<u32, Failure> {
+    fn samples_per_pixel(&self, method: Method, hint: Option<u32>) -> Result<u32, Failure> {
+        if method != Method::Raster {
+            return Ok(1);
+        }
         match (self.aa, self.samples) {
-            (Some(Antialiasing::None), Some(n)) if n > 1 => Err(Failure::usage(format!(
+            (Some(AntialiasingChoice::None), Some(n)) if n > 1 => Err(Failure::usage(format!(
                 "--aa none draws one sample a pixel; leave out --samples {n} or --aa none"
             ))),
-            (Some(Antialiasing::None), _) => Ok(1),
-            (Some(Antialiasing::Super), None) => Ok(SUPER_SAMPLES),
-            (_, samples) => Ok(samples.or(hint).unwrap_or(1).min(MOST_SAMPLES)),
+            (_, Some(n)) if n > MOST_SAMPLES => Err(Failure::usage(format!(
+                "the method raster draws up to {MOST_SAMPLES} samples a pixel, not {n}"
+            ))),
+            (Some(AntialiasingChoice::None), _) => Ok(1),
+            (Some(AntialiasingChoice::Super), None) => Ok(SUPER_SAMPLES),
+            (None | Some(AntialiasingChoice::Super), samples) => {
+                Ok(samples.or(hint).unwrap_or(1).min(MOST_SAMPLES))
+            }
+            (Some(_), _) => Err(Failure::usage(
+                "the method raster has --aa none and super; the others are for --method trace and path",
+            )),
         }
     }
 }

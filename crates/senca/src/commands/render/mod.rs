@@ -1,8 +1,11 @@
 //! `senca render`: a scene or a model into a picture.
 
 mod arguments;
+mod explain;
 mod exposure;
+mod partial;
 mod picture;
+mod tracing;
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -13,38 +16,55 @@ use senca::{Error, Report, Scene};
 
 pub(crate) use arguments::Arguments;
 use arguments::shading_of_hint;
+use partial::Partial;
 use picture::Target;
 
 use crate::cli::input::read_scene_and_hints;
 use crate::cli::output::{self, tell};
 use crate::cli::{
-    Failure, Interrupt, Progress, Seconds, Stages, Stats, Stopwatch, Triangles, peak_bytes, use_threads,
+    Failure, Interrupt, Progress, Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles, peak_bytes,
+    use_threads,
 };
 
 /// Draws the scene and writes the picture.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut watch = Stopwatch::start();
     let running = &arguments.running;
-    let target = Target::of(arguments)?;
+    let explanation = arguments.tracing.explain.as_deref().zip(arguments.tracing.pixel);
+    let target = match explanation {
+        Some((path, _)) => explain::check(path).map(|()| Target::nowhere())?,
+        None => Target::of(arguments)?,
+    };
     check_crop(arguments)?;
+    arguments.tracing.samples_map.as_deref().map_or(Ok(()), picture::check_pixels)?;
     running.stats.as_deref().map_or(Ok(()), output::check_writable)?;
     use_threads(running.threads)?;
     let interrupt = Interrupt::listen();
     let SceneFile { mut scene, render: hints } = read_scene_and_hints(&arguments.scene)?;
     exposure::expose(&mut scene, arguments.drawing.exposure);
-    let settings = arguments.settings(&hints, target.shading(hints.shading.map(shading_of_hint)))?;
+    let shading = target.shading(hints.shading.map(shading_of_hint));
+    let settings = arguments.settings(&hints, shading, target.is_drawing())?;
     if !running.quiet {
         tell_warnings(&arguments.scene, &scene);
-        tell_method(&arguments.scene, hints.method);
+        tell_method(&arguments.scene, hints.method.filter(|_| arguments.drawing.method.is_none()));
     }
+    if let Some((path, pixel)) = explanation {
+        let failure = |error: &Error| failure(&arguments.scene, error);
+        return explain::run(scene, &settings, pixel, path, &interrupt, failure);
+    }
+    let partial = Partial::of(&arguments.tracing)?;
     let mut seconds = Seconds { load: watch.lap(), ..Seconds::default() };
 
     let progress = Progress::new(running.quiet);
     let report_progress = |done| progress.report(done);
     let control = Control { progress: Some(&report_progress), cancel: Some(interrupt.flag()) };
-    let drawn = target.draw(Cow::Owned(scene), &settings, &control);
+    let drawn = target.draw(Cow::Owned(scene), &settings, &control, &partial, &interrupt);
     progress.finish();
-    let drawn = drawn.map_err(|error| failure(&arguments.scene, &error))?;
+    partial.outcome()?;
+    let drawn = drawn.map_err(|error| match error {
+        Error::Partial(_) => Failure::input(format!("{}: {error}", partial.name())),
+        _ => failure(&arguments.scene, &error),
+    })?;
     if !running.quiet
         && let Some(stops) = drawn.image().and_then(exposure::stops_too_bright)
     {
@@ -58,6 +78,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     seconds.render = (watch.lap() - seconds.prepare).max(0.0);
 
     output::write(target.path(), &drawn.encode()?, &interrupt)?;
+    if let Some((path, map)) = arguments.tracing.samples_map.as_deref().zip(drawn.samples_map.as_ref()) {
+        output::write(path, &picture::encoded(path, map)?, &interrupt)?;
+    }
     seconds.write = watch.lap();
     seconds.total = watch.total();
     match &running.stats {
@@ -79,17 +102,13 @@ fn check_crop(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Says that the scene's own method is not there, where it is not.
 fn tell_method(path: &Path, method: Option<MethodHint>) {
-    let name = match method {
-        None | Some(MethodHint::Raster) => return,
-        Some(MethodHint::Trace) => "trace",
-        Some(MethodHint::Radiosity) => "radiosity",
-        Some(MethodHint::Path) => "path",
-    };
-    let path = path.display();
-    tell(&format!(
-        "senca: {path}: warning: the scene asks for method {name}, which is not built into this version; \
-         it is drawn by raster"
-    ));
+    if method == Some(MethodHint::Radiosity) {
+        tell(&format!(
+            "senca: {}: warning: the scene asks for method radiosity, which is not built into this version; \
+             it is drawn by raster",
+            path.display()
+        ));
+    }
 }
 
 /// Says what the reader found odd.
@@ -125,7 +144,8 @@ fn stats(seconds: Seconds, report: &Report, size: [u32; 2], settings: &senca::Se
             clipped: drawing.triangles_clipped,
             drawn: drawing.triangles_drawn,
         },
-        samples: settings.drawing.samples,
+        samples: report.tracing.map_or(settings.drawing.samples, |t| t.samples_per_pixel),
+        tracing: report.tracing.as_ref().map(TracingStats::of),
         peak_bytes: peak_bytes(),
     }
 }

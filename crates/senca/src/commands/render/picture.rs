@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use senca::io::images::{PictureFormat, PictureOptions, encode};
 use senca::pipeline::{Control, Shading};
-use senca::{Error, Image, Report, Scene, Settings, render_with};
+use senca::{Error, Image, Method, Report, Scene, Settings, render_with};
 
 use super::Arguments;
-use crate::cli::Failure;
+use super::partial::Partial;
 use crate::cli::output::{check_writable, default_name, is_standard};
+use crate::cli::{Failure, Interrupt};
 
 /// Formats of pictures and drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,7 @@ pub(super) struct Target {
 /// A finished picture with what its drawing told.
 pub(super) struct Drawn {
     content: Content,
+    pub(super) samples_map: Option<Image>,
     pub(super) report: Report,
     pub(super) size: [u32; 2],
 }
@@ -59,6 +61,16 @@ impl Target {
         Ok(Self { path, format })
     }
 
+    /// No picture at all.
+    pub(super) fn nowhere() -> Self {
+        Self { path: PathBuf::new(), format: Format::Pixels(PictureFormat::Png) }
+    }
+
+    /// Whether the picture is made of lines.
+    pub(super) fn is_drawing(&self) -> bool {
+        self.format == Format::Svg
+    }
+
     /// The shading where the options say nothing: the scene's, unless the format cannot hold it.
     pub(super) fn shading(&self, hint: Option<Shading>) -> Option<Shading> {
         match self.format {
@@ -78,8 +90,17 @@ impl Target {
         scene: Cow<'_, Scene>,
         settings: &Settings,
         control: &Control<'_>,
+        partial: &Partial,
+        interrupt: &Interrupt,
     ) -> Result<Drawn, Error> {
+        let mut samples_map = None;
         let (content, size, report) = match self.format {
+            Format::Pixels(format) if settings.method != Method::Raster => {
+                let traced = partial.trace(scene, settings, control, interrupt)?;
+                samples_map = traced.samples_map;
+                let size = [traced.image.width(), traced.image.height()];
+                (Content::Pixels(traced.image, format), size, traced.report)
+            }
             Format::Pixels(format) => {
                 let (image, report) = render_with(scene, settings, control)?;
                 let size = [image.width(), image.height()];
@@ -90,7 +111,7 @@ impl Target {
                 (Content::Svg(svg), size, report)
             }
         };
-        Ok(Drawn { content, report, size })
+        Ok(Drawn { content, samples_map, report, size })
     }
 }
 
@@ -110,6 +131,23 @@ impl Drawn {
             Content::Svg(text) => Ok(text.as_bytes().into()),
         }
     }
+}
+
+/// Finds out before the work whether `path` names a picture of pixels that can be written.
+pub(super) fn check_pixels(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) || format_of(path)? != Format::Svg {
+        return check_writable(path);
+    }
+    Err(Failure::usage(format!("{}: a map of samples has pixels; take png", path.display())))
+}
+
+/// A picture as the bytes of the file at `path`.
+pub(super) fn encoded(path: &Path, image: &Image) -> Result<Vec<u8>, Failure> {
+    let format = match format_of(path) {
+        Ok(Format::Pixels(format)) => format,
+        _ => PictureFormat::Png,
+    };
+    Ok(encode(image, format, &PictureOptions::default())?)
 }
 
 fn extension(format: Format) -> &'static str {
