@@ -180,6 +180,9 @@ impl Bsdf {
     /// Mirror and border with constant shares, or by Fresnel's law where the material says so. What
     /// cannot be refracted is reflected.
     fn set_borders(&mut self, point: &MaterialPoint) {
+        if point.mirror == LinearRgb::BLACK && !point.transmits() {
+            return;
+        }
         let (reflected, cos_beyond) = self.border.reflectance(self.view.z);
         if cos_beyond <= 0.0 && point.transmits() {
             self.mirror = (point.mirror + point.transmission).map(|k| k.min(1.0));

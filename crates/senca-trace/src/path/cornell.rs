@@ -52,7 +52,6 @@ pub(crate) fn with_blocks() -> Scene {
     scene
 }
 
-#[cfg_attr(test, expect(dead_code, reason = "measured by the example"))]
 /// The box with a mirror ball and a glass ball.
 pub(crate) fn with_balls() -> Scene {
     let mut scene = room();

@@ -23,6 +23,11 @@ impl Distribution {
         self.sums.last().copied().unwrap_or(0.0)
     }
 
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.sums.len()
+    }
+
     /// Chance of number `index`.
     pub(super) fn chance(&self, index: usize) -> f64 {
         let total = self.total();

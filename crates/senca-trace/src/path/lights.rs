@@ -89,8 +89,11 @@ impl<'s> Lights<'s> {
                 lights.rectangles.push(i as u32);
             }
         }
-        for object in 0..world.objects().len() {
-            if let Some(glow) = Glow::new(world, materials, object as u32) {
+        let places = scene.world_from_nodes();
+        for (object, placed) in world.objects().iter().enumerate() {
+            // Flattened objects are not where their node is; those can only be met.
+            let as_told = places.get(placed.node.index()) == Some(&Some(placed.world_from_object));
+            if let Some(glow) = Glow::new(world, materials, object as u32).filter(|_| as_told) {
                 lights.of_object[object] = Some(lights.sources.len() as u32);
                 lights.sources.push(Source::Glow(glow));
             }
