@@ -36,9 +36,9 @@ const MOST_ALONG: u32 = 256;
 /// Fewest cells along the longest side.
 const LEAST_ALONG: u32 = 16;
 
-/// Share of the error of a grid above which one of half the step counts as no better. Where a surface
-/// is smooth a quarter is left.
-const STUCK: f64 = 0.6;
+/// Share of the error of a grid above which it does not pay to halve the step again. Where a surface is
+/// smooth a quarter is left, at the tip of a cone a half, for ever.
+const STUCK: f64 = 0.45;
 
 /// Steps of bisection along an edge; what is left is a 65 536th of it.
 const BISECTIONS: usize = 16;
