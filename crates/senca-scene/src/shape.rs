@@ -10,7 +10,6 @@ use crate::{Csg, Mesh};
 
 /// The form of a geometry, in object space, lengths in world units.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "shapes are few; meshes are the common case")]
 pub enum Shape {
     /// A polygon mesh.
     Mesh(Mesh),

@@ -1,18 +1,18 @@
 //! From the shapes of a scene to surfaces that rays can meet.
 
 use senca_math::glam::DVec3;
-use senca_scene::{Shape, ShapeError};
+use senca_scene::{Csg, CsgNode, Shape, ShapeError};
 
 use super::{
-    Cuboid, Disc, Ellipsoid, Frustum, Implicit, PlaneSurface, Polygon, Prism, Revolution, Sphere, Torus,
+    CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Frustum, Implicit, Operation, PatchSurface,
+    PlaneSurface, Polygon, Prism, Revolution, Sphere, Torus,
 };
 use crate::Intersect;
 
-/// What builds the surfaces of shapes that have accelerators of their own.
+/// What builds the surfaces of meshes.
 pub type Elsewhere<'a, 's> = dyn FnMut(&'s Shape) -> Result<Box<dyn Intersect + 's>, ShapeError> + 'a;
 
-/// The surface of any shape but meshes and patches, which have their own accelerators: for those
-/// `elsewhere` is asked.
+/// The surface of any shape but meshes, for which `elsewhere` is asked.
 ///
 /// # Errors
 /// [`ShapeError`] when a parameter is out of range, in the same words as by tessellation, and whatever
@@ -22,7 +22,10 @@ pub fn surface_of<'s>(
     elsewhere: &mut Elsewhere<'_, 's>,
 ) -> Result<Box<dyn Intersect + 's>, ShapeError> {
     Ok(match shape {
-        Shape::Mesh(_) | Shape::BezierPatches { .. } | Shape::Nurbs(_) | Shape::Csg(_) => elsewhere(shape)?,
+        Shape::Mesh(_) => elsewhere(shape)?,
+        Shape::BezierPatches { patches } => Box::new(PatchSurface::from_bezier(patches)?),
+        Shape::Nurbs(nurbs) => Box::new(PatchSurface::from_nurbs(nurbs)?),
+        Shape::Csg(csg) => Box::new(csg_body(csg, elsewhere)?),
         Shape::Implicit(surface) => {
             Box::new(Implicit::new(surface.expression.clone(), surface.bounds, surface.capped)?)
         }
@@ -63,6 +66,43 @@ pub fn surface_of<'s>(
         }
         Shape::Revolution { profile, bezier, angle } => Box::new(Revolution::new(profile, *bezier, *angle)?),
     })
+}
+
+/// The body of a tree of bodies; its surface numbers are those of the leaves, from left to right.
+fn csg_body<'s>(csg: &'s Csg, elsewhere: &mut Elsewhere<'_, 's>) -> Result<CsgBody<'s>, ShapeError> {
+    csg.check()?;
+    let mut builder = CsgBuilder::new();
+    add_node(&mut builder, &csg.root, elsewhere)?;
+    builder.finish().map_err(|error| csg_error(&error))
+}
+
+/// Adds a part of a tree; [`Csg::check`] has seen to it that the tree is not deep.
+fn add_node<'s>(
+    builder: &mut CsgBuilder<'s>,
+    node: &'s CsgNode,
+    elsewhere: &mut Elsewhere<'_, 's>,
+) -> Result<(), ShapeError> {
+    let (operation, bodies) = match node {
+        CsgNode::Union(bodies) => (Operation::Union, bodies),
+        CsgNode::Intersection(bodies) => (Operation::Intersection, bodies),
+        CsgNode::Difference(bodies) => (Operation::Difference, bodies),
+        CsgNode::Leaf(leaf) => {
+            let surface = surface_of(&leaf.shape, elsewhere)?;
+            let object_from_leaf = leaf.transform.matrix();
+            let added = match *leaf.shape {
+                Shape::Plane { size: None } => builder.half_space(surface, object_from_leaf),
+                _ => builder.leaf(surface, object_from_leaf),
+            };
+            return added.map_err(|error| csg_error(&error));
+        }
+    };
+    builder.open(operation).map_err(|error| csg_error(&error))?;
+    bodies.iter().try_for_each(|body| add_node(builder, body, elsewhere))?;
+    builder.close().map_err(|error| csg_error(&error))
+}
+
+fn csg_error(error: &CsgError) -> ShapeError {
+    ShapeError::Malformed { shape: "csg", reason: error.to_string() }
 }
 
 fn disc(radius: f64, inner: f64) -> Result<Box<dyn Intersect>, ShapeError> {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use senca_bvh::BuildError;
 use senca_math::glam::{DMat3, DMat4};
 use senca_scene::{
-    AlphaMode, Geometry, GeometryId, Instance, Material, MaterialId, Mesh, Scene, Shape, ShapeError, Surface,
+    AlphaMode, Geometry, GeometryId, Instance, Material, MaterialId, Mesh, Scene, Shape, ShapeError,
     TessellationSettings, Warning, tessellate,
 };
 
@@ -136,13 +136,12 @@ impl<'s> Builder<'s, '_> {
         let material_of = |own: Option<MaterialId>| {
             own.or(node).or(geometry.material).map_or(count, |m| m.index().min(count))
         };
-        let surfaces: &[Surface] = match &geometry.shape {
-            Shape::Mesh(mesh) => &mesh.surfaces,
-            _ => &[],
-        };
-        match surfaces {
-            [] => vec![material_of(None)],
-            some => some.iter().map(|s| material_of(s.material)).collect(),
+        match &geometry.shape {
+            Shape::Mesh(Mesh { surfaces, .. }) if !surfaces.is_empty() => {
+                surfaces.iter().map(|surface| material_of(surface.material)).collect()
+            }
+            Shape::Csg(csg) => csg.leaves().iter().map(|leaf| material_of(leaf.material)).collect(),
+            _ => vec![material_of(None)],
         }
     }
 }

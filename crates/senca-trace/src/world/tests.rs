@@ -171,3 +171,30 @@ fn the_epsilon_of_the_text_can_be_asked_for() {
     let ray = world.spawn(&at, 2.0 * DVec3::Y);
     assert_eq!((ray.origin, ray.t_min), (at.point, 0.005));
 }
+
+#[test]
+fn leaves_of_bodies_put_together_keep_their_materials() {
+    use senca_scene::{Csg, CsgNode, Geometry, MaterialId};
+    let leaf = |x: f64, material| {
+        let place = Transform::Matrix(DMat4::from_translation(DVec3::X * x));
+        CsgNode::leaf(Shape::Sphere { radius: 1.0 }, place, material)
+    };
+    let root = CsgNode::Difference(vec![leaf(0.0, None), leaf(1.0, Some(MaterialId(1)))]);
+    let mut scene = Scene { materials: vec![Material::default(); 2], ..Scene::default() };
+    let shape = Shape::Csg(Csg { root });
+    let geometry = scene.add_geometry(Geometry { name: String::new(), shape, material: Some(MaterialId(0)) });
+    let node = scene.add_node(Node { geometry: Some(geometry), ..Node::default() });
+    scene.roots.push(node);
+    let world = World::new(&scene).expect("a world");
+    for (x, t, material, normal) in [(-5.0, 4.0, 0, -1.0), (5.0, 5.0, 1, 1.0)] {
+        let ray = Ray::new(DVec3::X * x, DVec3::X * -f64::signum(x));
+        let hit = world.closest(&ray, &mut Counters::default()).expect("a hit");
+        let met = world.interaction(&ray, &hit);
+        assert!((hit.crossing.t - t).abs() < 1e-9, "{}", hit.crossing.t);
+        assert_eq!(met.material, material);
+        assert!(
+            (met.normal - DVec3::X * normal).length() < 1e-9,
+            "outward, also where a body was taken away"
+        );
+    }
+}
