@@ -254,11 +254,16 @@ impl SideView {
             let corners = bounds.corners().map(|corner| self.place(corner));
             let min = corners.iter().fold(DVec2::MAX, |min, c| min.min(*c));
             let max = corners.iter().fold(DVec2::MIN, |max, c| max.max(*c));
+            // What fills the whole view, such as the ground, would say nothing.
+            let (min, max) = (min.max(DVec2::ZERO), max.min(SIDE_VIEW));
             let size = max - min;
+            if size.min_element() < 0.0 || size == SIDE_VIEW {
+                continue;
+            }
             let _ = writeln!(
                 out,
-                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#6080a0\" \
-                 fill-opacity=\"0.08\" stroke=\"#a0b0c0\"/>",
+                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#eef2f7\" \
+                 stroke=\"#a0b0c0\"/>",
                 min.x, min.y, size.x, size.y
             );
             let label = min.clamp(DVec2::splat(4.0), SIDE_VIEW - 60.0) + DVec2::new(4.0, 12.0);
