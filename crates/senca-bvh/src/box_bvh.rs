@@ -7,7 +7,7 @@ use senca_math::glam::Vec3;
 use crate::build::{Item, build};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
-use crate::traverse::{LaneRay, MAX_DEPTH, SHALLOW, Visitor, stack_size, walk};
+use crate::traverse::{LaneRay, Visitor, walk};
 use crate::{Aabb32, BuildError, BuildSettings, Ray32, TraversalCounts};
 
 /// Coordinates beyond are taken as infinite, so that surfaces can be computed.
@@ -24,8 +24,6 @@ pub struct BoxBvh {
     /// Items by leaf.
     items: Vec<u32>,
     bounds: Aabb32,
-    /// Levels of nodes.
-    depth: usize,
     level: Level,
 }
 
@@ -58,7 +56,6 @@ impl BoxBvh {
                 .iter()
                 .filter(|bounds| !bounds.is_empty())
                 .fold(Aabb32::EMPTY, |all, bounds| all.union(*bounds)),
-            depth: tree.depth,
             level: settings.level,
         })
     }
@@ -83,67 +80,77 @@ impl BoxBvh {
     ///
     /// A ray with a negative `t_min` is asked about everything behind its origin first; an item may be
     /// offered twice then.
-    #[inline]
-    pub fn closest(&self, ray: &Ray32, test: impl FnMut(u32, f32) -> Option<f32>) {
-        self.closest_counted(ray, &mut TraversalCounts::default(), test);
+    pub fn closest(&self, ray: &Ray32, mut test: impl FnMut(u32, f32) -> Option<f32>) {
+        self.find_closest(ray, &mut TraversalCounts::default(), &mut test);
     }
 
     /// As [`BoxBvh::closest`], adding what it cost to `counts`.
-    #[inline]
     pub fn closest_counted(
         &self,
         ray: &Ray32,
         counts: &mut TraversalCounts,
         mut test: impl FnMut(u32, f32) -> Option<f32>,
     ) {
-        let mut ahead = *ray;
-        if let Some([behind, rest]) = ray.halves() {
-            ahead = rest;
-            let test = |item| {
-                ahead.t_max = test(item, ahead.t_max).map_or(ahead.t_max, |t| ahead.t_max.min(t));
-                false
-            };
-            self.walk(&behind, &mut Items { items: &self.items, test: Any { test, found: false }, counts });
-        }
-        self.walk(&ahead, &mut Items { items: &self.items, test: Nearest(test), counts });
+        self.find_closest(ray, counts, &mut test);
     }
 
     /// Whether `test` says yes to any item whose box the ray meets.
-    #[inline]
-    pub fn any(&self, ray: &Ray32, test: impl FnMut(u32) -> bool) -> bool {
-        self.any_counted(ray, &mut TraversalCounts::default(), test)
+    pub fn any(&self, ray: &Ray32, mut test: impl FnMut(u32) -> bool) -> bool {
+        self.find_any(ray, &mut TraversalCounts::default(), &mut test)
     }
 
     /// As [`BoxBvh::any`], adding what it cost to `counts`.
-    #[inline]
     pub fn any_counted(
         &self,
         ray: &Ray32,
         counts: &mut TraversalCounts,
-        test: impl FnMut(u32) -> bool,
+        mut test: impl FnMut(u32) -> bool,
     ) -> bool {
-        let mut items = Items { items: &self.items, test: Any { test, found: false }, counts };
+        self.find_any(ray, counts, &mut test)
+    }
+
+    // What callers give is called through a pointer, so that the walk is compiled once.
+    fn find_closest(
+        &self,
+        ray: &Ray32,
+        counts: &mut TraversalCounts,
+        test: &mut dyn FnMut(u32, f32) -> Option<f32>,
+    ) {
+        let mut ahead = *ray;
+        if let Some([behind, rest]) = ray.halves() {
+            ahead = rest;
+            let mut behind_test = |item| {
+                ahead.t_max = test(item, ahead.t_max).map_or(ahead.t_max, |t| ahead.t_max.min(t));
+                false
+            };
+            self.any_ahead(&behind, counts, &mut behind_test);
+        }
+        self.walk(&ahead, &mut Items { items: &self.items, test: Nearest(test), counts });
+    }
+
+    fn find_any(&self, ray: &Ray32, counts: &mut TraversalCounts, test: &mut dyn FnMut(u32) -> bool) -> bool {
         match ray.halves() {
-            None => self.walk(ray, &mut items),
+            None => self.any_ahead(ray, counts, test),
             Some([behind, ahead]) => {
-                self.walk(&behind, &mut items);
-                if !items.test.found {
-                    self.walk(&ahead, &mut items);
-                }
+                self.any_ahead(&behind, counts, test) || self.any_ahead(&ahead, counts, test)
             }
         }
+    }
+
+    fn any_ahead(
+        &self,
+        ray: &Ray32,
+        counts: &mut TraversalCounts,
+        test: &mut dyn FnMut(u32) -> bool,
+    ) -> bool {
+        let mut items = Items { items: &self.items, test: Any { test, found: false }, counts };
+        self.walk(ray, &mut items);
         items.test.found
     }
 
-    #[inline]
     fn walk<V: Visitor>(&self, ray: &Ray32, visitor: &mut V) {
         if let Some(prepared) = PreparedRay::new(ray) {
-            // A short stack is cheaper to make.
-            if self.depth <= SHALLOW {
-                dispatch!(self.level, simd => walk::<_, _, { stack_size(SHALLOW) }>(simd, &self.nodes, &prepared, visitor));
-            } else {
-                dispatch!(self.level, simd => walk::<_, _, { stack_size(MAX_DEPTH) }>(simd, &self.nodes, &prepared, visitor));
-            }
+            dispatch!(self.level, simd => walk(simd, &self.nodes, &prepared, visitor));
         }
     }
 }

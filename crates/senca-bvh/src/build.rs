@@ -17,7 +17,7 @@ pub(crate) use item::{Extent, Item};
 use split::{Children, Set, Splitting, children_of};
 
 /// From this level of nodes on, sets are cut in the middle, which ends within a few levels.
-const BALANCED_DEPTH: usize = MAX_DEPTH - 24;
+const BALANCED_DEPTH: usize = MAX_DEPTH - 20;
 
 /// Sets with fewer items are built by one thread.
 const PARALLEL: usize = 4096;
@@ -32,8 +32,6 @@ pub(crate) struct Tree {
     /// Indices of the caller, leaf by leaf.
     pub(crate) items: Vec<u32>,
     pub(crate) extent: Extent,
-    /// Levels of nodes.
-    pub(crate) depth: usize,
 }
 
 /// Part of a tree; indices count from its own beginning.
@@ -41,8 +39,6 @@ pub(crate) struct Tree {
 struct Arena {
     nodes: Vec<Node>,
     leaves: Vec<(u32, u32)>,
-    /// Levels of nodes, counted from the root of the whole tree.
-    depth: usize,
 }
 
 /// Leaves hold from 1 to `max_leaf` items.
@@ -56,7 +52,7 @@ pub(crate) fn build(mut items: Vec<Item>, max_leaf: usize, level: Level) -> Tree
     let arena = builder.grow_parallel(&mut items, &mut scratch, set, 0);
     drop(scratch);
     let items = items.par_iter().map(Item::index).collect();
-    Tree { nodes: arena.nodes, leaves: arena.leaves, items, extent: set.extent, depth: arena.depth }
+    Tree { nodes: arena.nodes, leaves: arena.leaves, items, extent: set.extent }
 }
 
 struct Builder {
@@ -90,7 +86,6 @@ impl Builder {
             })
             .collect();
         arena.nodes.push(Node::EMPTY);
-        arena.depth = depth + 1;
         let slots = slots(&set, children.as_slice());
         for ((slot, child), part) in slots.into_iter().zip(children.as_slice()).zip(arenas) {
             let reference = match part {
@@ -106,7 +101,6 @@ impl Builder {
     fn grow(&self, arena: &mut Arena, items: &mut [Item], set: Set, depth: usize) -> Child {
         let index = arena.nodes.len();
         arena.nodes.push(Node::EMPTY);
-        arena.depth = arena.depth.max(depth + 1);
         let children = self.children_of(items, &mut [], set, depth);
         for (slot, child) in slots(&set, children.as_slice()).into_iter().zip(children.as_slice()) {
             let reference = if child.len() <= self.max_leaf {
@@ -141,7 +135,6 @@ impl Arena {
         }
         self.nodes.append(&mut other.nodes);
         self.leaves.append(&mut other.leaves);
-        self.depth = self.depth.max(other.depth);
         Child::node(nodes)
     }
 }

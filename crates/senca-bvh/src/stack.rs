@@ -18,14 +18,14 @@ impl<const N: usize> Places<N> {
     }
 }
 
-/// Children that wait, each with the distance at which the ray enters it.
-pub(crate) struct Stack<'a, const N: usize> {
+/// Children that wait. With DISTANCES, each with that at which the ray enters it.
+pub(crate) struct Stack<'a, const N: usize, const DISTANCES: bool> {
     places: &'a mut Places<N>,
     /// All places below have been written.
     top: usize,
 }
 
-impl<'a, const N: usize> Stack<'a, N> {
+impl<'a, const N: usize, const DISTANCES: bool> Stack<'a, N, DISTANCES> {
     #[inline(always)]
     pub(crate) fn new(places: &'a mut Places<N>) -> Self {
         Self { places, top: 0 }
@@ -36,7 +36,7 @@ impl<'a, const N: usize> Stack<'a, N> {
     pub(crate) fn push(&mut self, entries: [f32; WIDTH], children: [u32; WIDTH], count: usize) {
         let top = self.top;
         assert!(top <= N - WIDTH && count <= WIDTH);
-        if let Some(places) = self.places.entries[top..].first_chunk_mut::<WIDTH>() {
+        if DISTANCES && let Some(places) = self.places.entries[top..].first_chunk_mut::<WIDTH>() {
             *places = entries.map(MaybeUninit::new);
         }
         if let Some(places) = self.places.children[top..].first_chunk_mut::<WIDTH>() {
@@ -45,22 +45,31 @@ impl<'a, const N: usize> Stack<'a, N> {
         self.top = top + count;
     }
 
-    /// Takes the last child that the ray enters no later than at `t_max`.
+    /// Takes the last child. With distances, the last that the ray enters no later than at `t_max`.
     #[inline(always)]
     pub(crate) fn pop(&mut self, t_max: f32) -> Option<u32> {
         while self.top > 0 {
             self.top -= 1;
-            // SAFETY: `push` is all that raises `top`, never beyond places it has written in both arrays.
-            let (entry, child) = unsafe {
-                (
-                    self.places.entries.get_unchecked(self.top).assume_init(),
-                    self.places.children.get_unchecked(self.top).assume_init(),
-                )
-            };
-            if entry <= t_max {
-                return Some(child);
+            if !DISTANCES || self.entry() <= t_max {
+                return Some(self.child());
             }
         }
         None
+    }
+
+    /// The distance that was last.
+    #[inline(always)]
+    fn entry(&self) -> f32 {
+        // SAFETY: `push` is all that raises `top`. With DISTANCES, which `pop` has seen to, it does so by no
+        // more than the places of `entries` it has written, and checks that they are there.
+        unsafe { self.places.entries.get_unchecked(self.top).assume_init() }
+    }
+
+    /// The child that was last.
+    #[inline(always)]
+    fn child(&self) -> u32 {
+        // SAFETY: `push` is all that raises `top`, by no more than the places of `children` it has written,
+        // and checks that they are there.
+        unsafe { self.places.children.get_unchecked(self.top).assume_init() }
     }
 }

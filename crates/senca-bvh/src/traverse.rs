@@ -8,16 +8,11 @@ use crate::prepared::PreparedRay;
 use crate::stack::{Places, Stack};
 
 /// Levels of nodes a hierarchy may have; see the build.
-pub(crate) const MAX_DEPTH: usize = 64;
+pub(crate) const MAX_DEPTH: usize = 48;
 
-/// Most hierarchies have no more levels.
-pub(crate) const SHALLOW: usize = 12;
-
-/// Places on the stack for a hierarchy of so many levels of nodes: each leaves at most seven siblings
-/// behind, and all eight places after them are written.
-pub(crate) const fn stack_size(depth: usize) -> usize {
-    (WIDTH - 1) * depth + WIDTH
-}
+/// Places on the stack: each level leaves at most seven siblings behind, and all eight places after them
+/// are written.
+const STACK: usize = (WIDTH - 1) * MAX_DEPTH + WIDTH;
 
 /// What is done at the leaves.
 pub(crate) trait Visitor {
@@ -103,22 +98,32 @@ fn meet<S: Simd>(simd: S, ray: &LaneRay<S>, node: &Node, t_max: f32) -> (f32x8<S
 }
 
 /// Visits the leaves whose boxes the ray meets between `t_min` and `t_max`, roughly from near to far.
-/// Ends when the visitor says so. STACK is at least [`stack_size`] of the hierarchy.
+/// Ends when the visitor says so.
 #[inline(always)]
-pub(crate) fn walk<S: Simd, V: Visitor, const STACK: usize>(
+pub(crate) fn walk<S: Simd, V: Visitor>(simd: S, nodes: &[Node], ray: &PreparedRay, visitor: &mut V) {
+    if nodes.is_empty() {
+        return;
+    }
+    let mut places = Places::<STACK>::new();
+    // When any hit ends the walk, t_max stays and there is no distance to compare with it.
+    if V::ANY {
+        descend(simd, nodes, ray, visitor, Stack::<_, false>::new(&mut places));
+    } else {
+        descend(simd, nodes, ray, visitor, Stack::<_, true>::new(&mut places));
+    }
+}
+
+#[inline(always)]
+fn descend<S: Simd, V: Visitor, const DISTANCES: bool>(
     simd: S,
     nodes: &[Node],
     ray: &PreparedRay,
     visitor: &mut V,
+    mut stack: Stack<'_, STACK, DISTANCES>,
 ) {
-    if nodes.is_empty() {
-        return;
-    }
     let lanes = LaneRay::new(simd, ray);
     let orders = &ORDERS[octant(ray)];
     let mut t_max = ray.t_max;
-    let mut places = Places::<STACK>::new();
-    let mut stack = Stack::new(&mut places);
     let mut current = Child::node(0);
     loop {
         if current.is_leaf() {

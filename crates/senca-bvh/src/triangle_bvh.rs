@@ -8,7 +8,7 @@ use crate::block::{Block, LANES};
 use crate::build::{Item, build};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
-use crate::traverse::{LaneRay, MAX_DEPTH, SHALLOW, Visitor, stack_size, walk};
+use crate::traverse::{LaneRay, Visitor, walk};
 use crate::watertight::intersect;
 use crate::{Aabb32, BuildError, Ray32, TraversalCounts, TriangleHit};
 
@@ -41,8 +41,6 @@ pub struct TriangleBvh {
     nodes: Vec<Node>,
     blocks: Vec<Block>,
     bounds: Aabb32,
-    /// Levels of nodes.
-    depth: usize,
     level: Level,
 }
 
@@ -75,13 +73,7 @@ impl TriangleBvh {
                 block
             })
             .collect();
-        Ok(Self {
-            nodes: tree.nodes,
-            blocks,
-            bounds: tree.extent.as_box(),
-            depth: tree.depth,
-            level: settings.level,
-        })
+        Ok(Self { nodes: tree.nodes, blocks, bounds: tree.extent.as_box(), level: settings.level })
     }
 
     /// The box around all triangles that can be met; empty if there are none.
@@ -100,108 +92,122 @@ impl TriangleBvh {
 
     /// The hit with the smallest t.
     #[must_use]
-    #[inline]
     pub fn closest(&self, ray: &Ray32) -> Option<TriangleHit> {
-        self.find_closest(ray, |_| true, Uncounted)
+        if ray.t_min < 0.0 {
+            return self.closest_where(ray, |_| true);
+        }
+        self.closest_ahead(ray, |_: &TriangleHit| true, Uncounted)
     }
 
     /// The hit with the smallest t of those that `accept` agrees to. It may be asked about hits that
     /// turn out not to be the closest.
-    #[inline]
     pub fn closest_where(
         &self,
         ray: &Ray32,
-        accept: impl FnMut(&TriangleHit) -> bool,
+        mut accept: impl FnMut(&TriangleHit) -> bool,
     ) -> Option<TriangleHit> {
-        self.find_closest(ray, accept, Uncounted)
+        self.find_closest(ray, &mut accept, &mut TraversalCounts::default())
     }
 
     /// As [`TriangleBvh::closest`], adding what it cost to `counts`.
     pub fn closest_counted(&self, ray: &Ray32, counts: &mut TraversalCounts) -> Option<TriangleHit> {
-        self.find_closest(ray, |_| true, counts)
+        self.find_closest(ray, &mut |_| true, counts)
+    }
+
+    /// As [`TriangleBvh::closest_where`], adding what it cost to `counts`.
+    pub fn closest_where_counted(
+        &self,
+        ray: &Ray32,
+        counts: &mut TraversalCounts,
+        mut accept: impl FnMut(&TriangleHit) -> bool,
+    ) -> Option<TriangleHit> {
+        self.find_closest(ray, &mut accept, counts)
     }
 
     /// Whether the ray meets any triangle.
     #[must_use]
-    #[inline]
     pub fn occluded(&self, ray: &Ray32) -> bool {
-        self.find_any(ray, |_| true, Uncounted)
+        if ray.t_min < 0.0 {
+            return self.occluded_where(ray, |_| true);
+        }
+        self.any_ahead(ray, |_: &TriangleHit| true, Uncounted)
     }
 
     /// Whether the ray meets any triangle at a place that `accept` agrees to.
-    #[inline]
-    pub fn occluded_where(&self, ray: &Ray32, accept: impl FnMut(&TriangleHit) -> bool) -> bool {
-        self.find_any(ray, accept, Uncounted)
+    pub fn occluded_where(&self, ray: &Ray32, mut accept: impl FnMut(&TriangleHit) -> bool) -> bool {
+        self.find_any(ray, &mut accept, &mut TraversalCounts::default())
     }
 
     /// As [`TriangleBvh::occluded`], adding what it cost to `counts`.
     pub fn occluded_counted(&self, ray: &Ray32, counts: &mut TraversalCounts) -> bool {
-        self.find_any(ray, |_| true, counts)
+        self.find_any(ray, &mut |_| true, counts)
+    }
+
+    /// As [`TriangleBvh::occluded_where`], adding what it cost to `counts`.
+    pub fn occluded_where_counted(
+        &self,
+        ray: &Ray32,
+        counts: &mut TraversalCounts,
+        mut accept: impl FnMut(&TriangleHit) -> bool,
+    ) -> bool {
+        self.find_any(ray, &mut accept, counts)
     }
 
     /// Shows `visit` every triangle that the ray meets, once each, in no particular order.
-    #[inline]
     pub fn all_hits(&self, ray: &Ray32, mut visit: impl FnMut(&TriangleHit)) {
-        let accept = |hit: &TriangleHit| {
+        let mut accept = |hit: &TriangleHit| {
             visit(hit);
             false
         };
-        self.find_any(ray, accept, Uncounted);
+        self.find_any(ray, &mut accept, &mut TraversalCounts::default());
     }
 
-    #[inline]
-    fn find_closest<A: FnMut(&TriangleHit) -> bool, C: Count>(
+    // What callers give is called through a pointer: hits are few, and the walk is compiled once.
+    fn find_closest(
         &self,
         ray: &Ray32,
-        mut accept: A,
-        mut count: C,
+        accept: &mut Accept<'_>,
+        counts: &mut TraversalCounts,
     ) -> Option<TriangleHit> {
         match ray.halves() {
-            None => self.closest_ahead(ray, accept, count),
+            None => self.closest_ahead(ray, accept, counts),
             Some([behind, ahead]) => self
-                .farthest(&behind, |hit| accept(&hit.reversed()), &mut count)
+                .farthest(&behind, &mut |hit| accept(&hit.reversed()), counts)
                 .map(|hit| hit.reversed())
-                .or_else(|| self.closest_ahead(&ahead, accept, count)),
+                .or_else(|| self.closest_ahead(&ahead, accept, counts)),
         }
     }
 
-    #[inline]
-    fn find_any<A: FnMut(&TriangleHit) -> bool, C: Count>(
-        &self,
-        ray: &Ray32,
-        mut accept: A,
-        mut count: C,
-    ) -> bool {
+    fn find_any(&self, ray: &Ray32, accept: &mut Accept<'_>, counts: &mut TraversalCounts) -> bool {
         match ray.halves() {
-            None => self.any_ahead(ray, accept, count),
+            None => self.any_ahead(ray, accept, counts),
             Some([behind, ahead]) => {
-                self.any_ahead(&behind, |hit| accept(&hit.reversed()), &mut count)
-                    || self.any_ahead(&ahead, accept, count)
+                let turned: &mut Accept<'_> = &mut |hit: &TriangleHit| accept(&hit.reversed());
+                self.any_ahead(&behind, turned, &mut *counts) || self.any_ahead(&ahead, accept, counts)
             }
         }
     }
 
     /// The hit with the largest t, of equal ones that of the lowest index.
-    fn farthest<A: FnMut(&TriangleHit) -> bool, C: Count>(
+    fn farthest(
         &self,
         ray: &Ray32,
-        mut accept: A,
-        count: C,
+        accept: &mut Accept<'_>,
+        counts: &mut TraversalCounts,
     ) -> Option<TriangleHit> {
         let mut best: Option<TriangleHit> = None;
-        let keep = |hit: &TriangleHit| {
+        let keep: &mut Accept<'_> = &mut |hit: &TriangleHit| {
             let better = best.is_none_or(|b| hit.t > b.t || (hit.t == b.t && hit.triangle < b.triangle));
             if better && accept(hit) {
                 best = Some(*hit);
             }
             false
         };
-        self.any_ahead(ray, keep, count);
+        self.any_ahead(ray, keep, counts);
         best
     }
 
     /// The closest hit of a ray whose t is nowhere negative.
-    #[inline]
     fn closest_ahead<A: FnMut(&TriangleHit) -> bool, C: Count>(
         &self,
         ray: &Ray32,
@@ -214,7 +220,6 @@ impl TriangleBvh {
     }
 
     /// Whether a ray whose t is nowhere negative meets anything.
-    #[inline]
     fn any_ahead<A: FnMut(&TriangleHit) -> bool, C: Count>(&self, ray: &Ray32, accept: A, count: C) -> bool {
         let mut search = Search { blocks: &self.blocks, found: Any { found: false, accept }, count };
         self.walk(ray, &mut search);
@@ -224,15 +229,13 @@ impl TriangleBvh {
     #[inline]
     fn walk<V: Visitor>(&self, ray: &Ray32, visitor: &mut V) {
         if let Some(prepared) = PreparedRay::new(ray) {
-            // A short stack is cheaper to make.
-            if self.depth <= SHALLOW {
-                dispatch!(self.level, simd => walk::<_, _, { stack_size(SHALLOW) }>(simd, &self.nodes, &prepared, visitor));
-            } else {
-                dispatch!(self.level, simd => walk::<_, _, { stack_size(MAX_DEPTH) }>(simd, &self.nodes, &prepared, visitor));
-            }
+            dispatch!(self.level, simd => walk(simd, &self.nodes, &prepared, visitor));
         }
     }
 }
+
+/// What a caller says to a hit.
+type Accept<'a> = dyn FnMut(&TriangleHit) -> bool + 'a;
 
 /// Counts of a walk, kept or not.
 trait Count {
@@ -251,13 +254,6 @@ impl Count for &mut TraversalCounts {
     fn add(&mut self, nodes: u32, triangles: u32) {
         self.nodes += u64::from(nodes);
         self.triangles += u64::from(triangles);
-    }
-}
-
-impl<C: Count> Count for &mut C {
-    #[inline(always)]
-    fn add(&mut self, nodes: u32, triangles: u32) {
-        (**self).add(nodes, triangles);
     }
 }
 
