@@ -30,6 +30,8 @@ fn mesh() -> Mesh {
     mesh.faces.push(&[4, 5, 6], 1);
     mesh.surfaces = vec![Surface { name: "base".to_owned(), ..Surface::default() }, Surface::default()];
     mesh.surfaces[1].name = "side".to_owned();
+    // The numbers that the reader gives to the groups "s 1" and "s 2".
+    (mesh.surfaces[0].smoothing_group, mesh.surfaces[1].smoothing_group) = (2, 3);
     mesh.lines = vec![[0, 2]];
     mesh
 }
@@ -55,6 +57,21 @@ fn obj_keeps_polygons_surfaces_lines_and_creases() {
     let back = through_obj(&scene);
     assert_eq!(only_mesh(&back), &mesh());
     assert_eq!(back.nodes[0].name, "thing");
+}
+
+#[test]
+fn obj_keeps_surfaces_smooth_together() {
+    let mut mesh = mesh();
+    for (surface, material) in mesh.surfaces.iter_mut().zip(0..) {
+        (surface.smoothing_group, surface.material) = (7, Some(senca_scene::MaterialId(material)));
+    }
+    let mut scene = Scene::of_shape("thing", Shape::Mesh(mesh));
+    for name in ["red", "blue"] {
+        scene.add_material(Material { name: name.to_owned(), ..Material::default() });
+    }
+    let back = through_obj(&scene);
+    let groups: Vec<u32> = only_mesh(&back).surfaces.iter().map(|s| s.smoothing_group).collect();
+    assert!(groups.len() == 2 && groups[0] == groups[1] && groups[0] != 0, "{groups:?}");
 }
 
 #[test]

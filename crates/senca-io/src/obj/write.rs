@@ -5,7 +5,7 @@ use std::fmt::Write;
 use senca_scene::math::LinearRgb;
 use senca_scene::math::color::srgb_from_linear;
 use senca_scene::math::glam::Vec4;
-use senca_scene::{Mesh, Scene, TessellationSettings, Warning};
+use senca_scene::{Mesh, Scene, Surface, TessellationSettings, Warning};
 
 use crate::flatten::{Placed, placed_meshes};
 use crate::{WriteError, mtl};
@@ -144,8 +144,11 @@ impl Written {
             let name = if name.is_empty() { format!("surface_{surface}") } else { name };
             let _ = writeln!(self.text, "g {name}");
         }
+        // Surfaces of one smoothing group are written as the first of them.
+        let of_group = |s: &Surface| own.smoothing_group != 0 && s.smoothing_group == own.smoothing_group;
+        let first = placed.mesh.surfaces.iter().position(of_group).unwrap_or(surface as usize);
         match own.smooth {
-            true => writeln!(self.text, "s {}", self.smoothing + surface as usize + 1),
+            true => writeln!(self.text, "s {}", self.smoothing + first + 1),
             false => writeln!(self.text, "s off"),
         }
         .unwrap_or_default();
