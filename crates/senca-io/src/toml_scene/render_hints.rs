@@ -50,9 +50,9 @@ pub enum AccelerationHint {
     /// A sphere around each object.
     Spheres,
     /// A box around each object.
-    Boxes,
+    Bounds,
     /// The hierarchy of the scene's nodes.
-    Nodes,
+    Hierarchy,
     /// A uniform grid.
     Grid,
     /// An octree.
@@ -109,8 +109,8 @@ const ANTIALIASINGS: [(&str, AntialiasingHint); 5] = [
 const ACCELERATIONS: [(&str, AccelerationHint); 7] = [
     ("none", AccelerationHint::None),
     ("spheres", AccelerationHint::Spheres),
-    ("boxes", AccelerationHint::Boxes),
-    ("nodes", AccelerationHint::Nodes),
+    ("bounds", AccelerationHint::Bounds),
+    ("hierarchy", AccelerationHint::Hierarchy),
     ("grid", AccelerationHint::Grid),
     ("octree", AccelerationHint::Octree),
     ("bvh", AccelerationHint::Bvh),

@@ -345,8 +345,8 @@ fn accel_of_hint(hint: AccelerationHint) -> Accel {
     match hint {
         AccelerationHint::None => Accel::None,
         AccelerationHint::Spheres => Accel::Spheres,
-        AccelerationHint::Boxes => Accel::Bounds,
-        AccelerationHint::Nodes => Accel::Hierarchy,
+        AccelerationHint::Bounds => Accel::Bounds,
+        AccelerationHint::Hierarchy => Accel::Hierarchy,
         AccelerationHint::Grid => Accel::Grid,
         AccelerationHint::Octree => Accel::Octree,
         AccelerationHint::Bvh => Accel::Bvh,
