@@ -29,7 +29,9 @@ pub use line_drawing::render_svg;
 pub use prepare::{Prepared, prepare};
 pub use render::{Report, render, render_with};
 pub use settings::{LookAt, Method, Moment, Settings, Tracing, Viewpoint};
-pub use traced::{CameraOptics, ExplainedPixel, TraceJob, TracedPicture, explain_pixel, trace_with};
+pub use traced::{
+    CameraOptics, ExplainedPixel, SavePartial, TraceJob, TracedPicture, explain_pixel, trace_with,
+};
 
 pub use senca_io as io;
 pub use senca_math as math;

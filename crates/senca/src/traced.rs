@@ -17,13 +17,16 @@ use crate::{Error, Method, Report, Settings};
 /// Moments that an open shutter is divided into, at most.
 const MAX_MOMENTS: u32 = 64;
 
+/// Takes a partial picture as bytes.
+pub type SavePartial<'a> = dyn FnMut(&[u8]) + Send + 'a;
+
 /// What a caller of [`trace_with`] wants beside the picture.
 #[derive(Default)]
 pub struct TraceJob<'a> {
     /// A partial picture of [`TraceJob::save`] to go on with.
     pub resume: Option<&'a [u8]>,
     /// Called now and then, and at the end, with the partial picture as bytes.
-    pub save: Option<&'a mut (dyn FnMut(&[u8]) + Send)>,
+    pub save: Option<&'a mut SavePartial<'a>>,
     /// Whether a map of the samples is wanted.
     pub samples_map: bool,
 }

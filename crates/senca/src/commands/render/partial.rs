@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use senca::pipeline::Control;
-use senca::{Error, Scene, Settings, TraceJob, TracedPicture, trace_with};
+use senca::{Error, SavePartial, Scene, Settings, TraceJob, TracedPicture, trace_with};
 
 use super::tracing::TracingArguments;
 use crate::cli::output::{check_writable, is_standard};
@@ -59,8 +59,7 @@ impl Partial {
                 self.refused.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.into());
             }
         };
-        let save: Option<&mut (dyn FnMut(&[u8]) + Send)> =
-            if self.path.is_some() { Some(&mut keep) } else { None };
+        let save: Option<&mut SavePartial<'_>> = if self.path.is_some() { Some(&mut keep) } else { None };
         let mut job = TraceJob { resume: self.bytes.as_deref(), save, samples_map: self.samples_map };
         trace_with(scene, settings, control, &mut job)
     }
