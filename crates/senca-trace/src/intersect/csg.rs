@@ -271,6 +271,15 @@ impl Intersect for CsgBody<'_> {
         }
     }
 
+    fn precision(&self) -> f64 {
+        self.leaves.iter().map(|leaf| leaf.surface.precision()).fold(1e-10, f64::max)
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let leaves: usize = self.leaves.iter().map(|leaf| leaf.surface.memory_bytes()).sum();
+        leaves + size_of_val(&*self.leaves) + size_of_val(&*self.nodes)
+    }
+
     fn is_closed(&self) -> bool {
         true
     }

@@ -352,6 +352,10 @@ impl Intersect for PatchSurface {
         }
     }
 
+    fn memory_bytes(&self) -> usize {
+        self.memory()
+    }
+
     fn is_closed(&self) -> bool {
         self.is_closed
     }
