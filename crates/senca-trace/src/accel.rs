@@ -19,6 +19,7 @@
 //!    structure loses a hit that another one finds.
 
 mod binary;
+mod compare;
 mod elements;
 mod grid;
 mod hierarchy;
@@ -33,11 +34,12 @@ mod two_level;
 mod volumes;
 
 pub use binary::BinaryBvh;
+pub use compare::{Comparison, compare};
 pub use grid::Grid;
 pub use hierarchy::Hierarchy;
 pub use list::List;
 pub use octree::Octree;
-pub use settings::{Accel, AccelSettings};
+pub use settings::{Accel, AccelSettings, UnknownAccel};
 pub use slabs::{Slabs, meets_sphere};
 pub use two_level::TwoLevel;
 pub use volumes::{BoundingSphere, Volume, Volumes};

@@ -464,6 +464,18 @@ fn benchmarks_print_a_table() {
     assert!(String::from_utf8_lossy(&done.stdout).contains("fill"), "{done:?}");
 }
 
+#[test]
+fn accelerators_are_compared_in_a_table() {
+    let folder = folder();
+    let done = run_in(folder.path(), &["bench", "accel", "--objects", "10,20"]);
+    assert_exit(&done, 0, "");
+    let table = String::from_utf8_lossy(&done.stdout).into_owned();
+    let rows = |name: &str| table.lines().filter(|line| line.split_whitespace().nth(1) == Some(name)).count();
+    for name in ["none", "spheres", "bounds", "hierarchy", "grid", "octree", "sah", "bvh"] {
+        assert_eq!(rows(name), 2, "{name} in {table}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_a_long_drawing_and_leaves_nothing() {

@@ -4,6 +4,7 @@
 //! that runs too. The forms take turns, so that a change of the machine's mood meets all of them;
 //! the median of the times is told, and ratios between them, which mean more than the times.
 
+mod accel;
 mod data;
 mod list;
 mod measure;
@@ -21,9 +22,14 @@ use measure::{Runner, medians};
 /// What is measured and for how long.
 #[derive(Args, Debug)]
 pub(crate) struct Arguments {
-    /// Benchmarks to run [default: all]
+    /// Benchmarks to run, or "accel" for a table of the ray tracer's accelerators [default: all but that]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
+
+    /// Numbers of spheres that "accel" compares on
+    #[arg(long, value_name = "M,M,...", value_delimiter = ',', default_value = "10,100,1000",
+        value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    objects: Vec<u32>,
 
     /// Seconds for each measurement
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "0.5")]
@@ -64,6 +70,9 @@ struct Outcome {
 
 /// Runs the benchmarks and prints what they showed.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.names == ["accel"] {
+        return accel::run(&arguments.objects, arguments.json, arguments.quiet);
+    }
     let chosen = chosen(&arguments.names)?;
     let interrupt = Interrupt::listen();
     let runner = Runner::new(arguments.threads.map(usize::from), arguments.seconds)?;
@@ -85,7 +94,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Benchmark>, Failure> {
     if names.is_empty() {
         return Ok(ALL.iter().collect());
     }
-    let known = || ALL.iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
+    let known = || ALL.iter().map(|b| b.name).collect::<Vec<_>>().join(", ") + ", and alone accel";
     let find = |name: &String| {
         let found = ALL.iter().find(|b| b.name == name);
         found.ok_or_else(|| {
