@@ -259,7 +259,8 @@ impl Film {
         let mut report = FilmReport::default();
         while self.samples < wanted {
             let range = self.samples..wanted.min(self.samples + step);
-            let progress = Progress { control, from: first, to: wanted, range: range.clone() };
+            let clock = watch.time_limit.map(|limit| (start, limit));
+            let progress = Progress { control, from: first, to: wanted, range: range.clone(), clock };
             self.expose_pass(integrator, places, range, &progress, &mut report)?;
             if watch.time_limit.is_some_and(|limit| start.elapsed() >= limit) {
                 break;
@@ -356,6 +357,8 @@ struct Progress<'a> {
     to: u32,
     /// Samples of this pass.
     range: std::ops::Range<u32>,
+    /// When the exposure began, and how long it may take.
+    clock: Option<(Instant, Duration)>,
 }
 
 impl Progress<'_> {
@@ -364,7 +367,12 @@ impl Progress<'_> {
         let all = (self.to - self.from).max(1) as f32;
         let before = (self.range.start - self.from) as f32;
         let own = (self.range.end - self.range.start) as f32;
-        self.control.report((before + share * own) / all);
+        let of_samples = (before + share * own) / all;
+        let of_time = self.clock.map_or(0.0, |(start, limit)| {
+            start.elapsed().as_secs_f32() / limit.as_secs_f32().max(f32::MIN_POSITIVE)
+        });
+        // What is used up first ends the exposure. Both only grow.
+        self.control.report(of_samples.max(of_time.min(1.0)));
     }
 }
 

@@ -25,9 +25,9 @@ impl Film {
             return Ok(report);
         }
         let to = CORNER_SHARE + INSIDE_SHARE;
-        let progress = Progress { control, from: 0, to, range: 0..CORNER_SHARE };
+        let progress = Progress { control, from: 0, to, range: 0..CORNER_SHARE, clock: None };
         let corners = self.corners(integrator, &progress, &mut report)?;
-        let progress = Progress { control, from: 0, to, range: CORNER_SHARE..to };
+        let progress = Progress { control, from: 0, to, range: CORNER_SHARE..to, clock: None };
         self.insides(integrator, &settings, &corners, &progress, &mut report)?;
         self.samples = 1;
         Ok(report)
