@@ -83,6 +83,9 @@ enum Kind {
 /// Most cells of one surface.
 const MOST_CELLS: usize = 1 << 20;
 
+/// Most patches of one surface: a gigabyte.
+const MOST_PATCHES: usize = 1 << 20;
+
 /// Largest coordinate of a control point.
 const LARGEST: f64 = 1e100;
 
@@ -93,9 +96,10 @@ impl PatchSurface {
     /// [`senca_scene::tessellate`] makes.
     ///
     /// # Errors
-    /// A control point that is not finite or above 1e100.
+    /// A control point that is not finite or above 1e100; more than 2^20 patches.
     pub fn from_bezier(patches: &[BezierPatch]) -> Result<Self, ShapeError> {
         let shape = "Bézier patches";
+        at_most(shape, patches.len())?;
         if let Some(bad) = patches.iter().position(|patch| !patch.points.iter().all(is_possible)) {
             let reason = format!("patch {bad} has a control point that is not finite or too large");
             return Err(ShapeError::Malformed { shape, reason });
@@ -111,9 +115,10 @@ impl PatchSurface {
     /// The surface itself; it has one surface number, 0.
     ///
     /// # Errors
-    /// Numbers that do not make a surface, or a control point above 1e100.
+    /// Numbers that do not make a surface, a control point above 1e100, more than 2^20 control points.
     pub fn from_nurbs(surface: &NurbsSurface) -> Result<Self, ShapeError> {
         let shape = "NURBS surface";
+        at_most(shape, surface.points.len())?;
         let evaluator = surface.evaluator()?;
         if !surface.points.iter().all(is_possible) {
             return Err(ShapeError::Malformed { shape, reason: "a control point is too large".to_owned() });
@@ -246,6 +251,15 @@ impl PatchSurface {
         let domain = &domains[part as usize];
         ((within(domain, uv) - low) / size, 2.0 * domain.half() / size)
     }
+}
+
+/// Refuses more patches than can be held.
+fn at_most(shape: &'static str, patches: usize) -> Result<(), ShapeError> {
+    if patches <= MOST_PATCHES {
+        return Ok(());
+    }
+    let reason = format!("{patches} patches or control points are too many; there can be {MOST_PATCHES}");
+    Err(ShapeError::Malformed { shape, reason })
 }
 
 /// Whether a control point can be computed with.

@@ -410,3 +410,10 @@ fn poles_are_met_once() {
         assert!(normal.distance(DVec3::Z) < 1e-6, "{normal}");
     }
 }
+
+#[test]
+fn more_patches_than_memory_can_bear_are_refused() {
+    assert_eq!(super::at_most("patches", 1 << 20), Ok(()));
+    let error = super::at_most("patches", (1 << 20) + 1).expect_err("too many");
+    assert!(error.to_string().contains("too many"), "{error}");
+}
