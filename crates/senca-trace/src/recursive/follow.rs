@@ -5,11 +5,12 @@ use senca_math::glam::DVec3;
 use senca_shading::fog_share;
 
 use super::media::{Media, Medium};
-use super::optics::{fresnel_share, reflected_direction, transmitted_direction};
+use super::optics::fresnel_share;
 use super::recorder::{Met, Recorder, ShadowRay, Unrecorded, Unsent};
 use super::reflector::Reflector;
 use super::{Backs, Tracer};
 use crate::film::{Integrator, SamplePlace};
+use crate::textbook::{reflect, refract};
 use crate::{Interaction, MaterialPoint, Pattern, Ray, Sampler, TraceCounts};
 
 /// Rays of one tree at most, so that any depth ends. A mirror box of depth 10^6 stays below.
@@ -366,7 +367,7 @@ impl Tracer<'_> {
         let eta = crossing.map_or(f64::from(material.ior).recip(), |crossing| crossing.eta);
         let bent = crossing
             .filter(|crossing| !crossing.thin)
-            .map(|crossing| transmitted_direction(direction, normal, crossing.eta));
+            .map(|crossing| refract(normal, direction, crossing.eta, 1.0));
         let total = bent == Some(None);
         let (k_r, k_t) = match (material.fresnel, total) {
             // All light is reflected, the share k_t with it.
@@ -381,7 +382,7 @@ impl Tracer<'_> {
             }
         };
         let reflected = (k_r != LinearRgb::BLACK).then(|| {
-            let direction = above(reflected_direction(direction, normal), face);
+            let direction = above(reflect(normal, direction), face);
             Child { direction, share: k_r, media: *media }
         });
         let transmitted = crossing.filter(|_| k_t != LinearRgb::BLACK).map(|crossing| {
