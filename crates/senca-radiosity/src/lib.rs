@@ -1,0 +1,13 @@
+//! Radiosity: the exchange of light between matt surfaces (course text, chapter 4), and what research
+//! added to it.
+//!
+//! Light is counted in the unit of pictures: the radiosity B of a patch is what the patch shows, its
+//! emission E what it shows by itself, so that `B = E + reflectance * H` where H is the mean of B over
+//! what the patch sees, weighted by form factors. A point light of intensity 1 straight above a white
+//! patch makes it show 1. In photometric units a shown 1 is 1 cd/m², and the illuminance π H lux.
+
+mod error;
+mod patch_polygon;
+
+pub use error::RadiosityError;
+pub use patch_polygon::PatchPolygon;
