@@ -7,7 +7,11 @@
 //! patch makes it show 1. In photometric units a shown 1 is 1 cd/m², and the illuminance π H lux.
 
 mod error;
+mod mesh;
 mod patch_polygon;
+mod solution;
 
 pub use error::RadiosityError;
+pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
 pub use patch_polygon::PatchPolygon;
+pub use solution::{Solution, SolveReport};
