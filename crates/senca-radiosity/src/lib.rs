@@ -8,10 +8,12 @@
 
 mod error;
 mod mesh;
+mod occluders;
 mod patch_polygon;
 mod solution;
 
 pub use error::RadiosityError;
 pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
+pub use occluders::{Occluders, PolygonHit};
 pub use patch_polygon::PatchPolygon;
 pub use solution::{Solution, SolveReport};

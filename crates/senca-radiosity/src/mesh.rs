@@ -47,6 +47,9 @@ pub struct RadiantSurface {
     pub reflectance: LinearRgb,
     /// Light of its own, as shown.
     pub emission: LinearRgb,
+    /// Share of light that passes through the surface unbent, per channel in [0, 1]; black where it is
+    /// opaque.
+    pub transmittance: LinearRgb,
 }
 
 /// A polygon, or a part of one.
@@ -162,6 +165,11 @@ impl ElementMesh {
     pub fn surface(&self, element: u32) -> &RadiantSurface {
         let polygon = self.elements[element as usize].polygon;
         &self.surfaces[self.polygons[polygon as usize].surface as usize]
+    }
+
+    /// Lets a share of light pass through a surface, per channel in [0, 1].
+    pub fn set_transmittance(&mut self, surface: u32, share: LinearRgb) {
+        self.surfaces[surface as usize].transmittance = share;
     }
 
     /// Box around the polygons.

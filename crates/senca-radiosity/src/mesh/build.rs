@@ -6,8 +6,8 @@ use senca_math::glam::{DMat3, DMat4, DVec3};
 use senca_math::polygon::triangulate_in_space;
 use senca_math::{Aabb, LinearRgb};
 use senca_scene::{
-    Instance, Material, Mesh, Reflection, Scene, Shape, TessellationSettings, Tolerance, is_flat_quad,
-    split_quad, tessellate,
+    AlphaMode, Instance, Material, Mesh, Reflection, Scene, Shape, TessellationSettings, Tolerance,
+    is_flat_quad, split_quad, tessellate,
 };
 use smallvec::SmallVec;
 
@@ -78,9 +78,14 @@ impl ElementMesh {
     pub fn of_polygons(polygons: &[(&[DVec3], LinearRgb, LinearRgb)]) -> Self {
         let mut mesh = Self::default();
         for (number, &(corners, reflectance, emission)) in (0..).zip(polygons) {
-            let surface =
-                RadiantSurface { instance: number, material: number, back: false, reflectance, emission };
-            mesh.surfaces.push(surface);
+            mesh.surfaces.push(RadiantSurface {
+                instance: number,
+                material: number,
+                back: false,
+                reflectance,
+                emission,
+                transmittance: LinearRgb::BLACK,
+            });
             let normal = senca_math::newell_normal(corners).normalize_or_zero();
             let vertices: Vec<u32> = corners.iter().map(|&p| mesh.push_vertex(p, normal)).collect();
             mesh.push_polygon(&vertices, number);
@@ -212,8 +217,15 @@ impl<'s> Builder<'s> {
                 return None;
             }
             let (reflectance, emission) = (matt_reflectance(material), material.emission);
-            let surface = RadiantSurface { instance, material: number, back, reflectance, emission };
-            self.mesh.surfaces.push(surface);
+            let transmittance = transmittance(material);
+            self.mesh.surfaces.push(RadiantSurface {
+                instance,
+                material: number,
+                back,
+                reflectance,
+                emission,
+                transmittance,
+            });
             Some(self.mesh.surfaces.len() as u32 - 1)
         };
         materials.iter().map(&mut add).collect()
@@ -316,6 +328,22 @@ fn matt_reflectance(material: &Material) -> LinearRgb {
         Reflection::MetallicRoughness(rough) => {
             rough.base_color * ((1.0 - rough.metallic) * (1.0 - DIELECTRIC_MIRROR))
         }
+    }
+}
+
+/// The share of light that passes through a surface, as it is seen straight on.
+fn transmittance(material: &Material) -> LinearRgb {
+    if material.is_transmissive() {
+        return material.transmission.map(|t| t.clamp(0.0, 1.0));
+    }
+    let alpha = match &material.reflection {
+        Reflection::Phong(phong) => phong.alpha,
+        Reflection::MetallicRoughness(rough) => rough.alpha,
+    };
+    match material.alpha_mode {
+        AlphaMode::Opaque => LinearRgb::BLACK,
+        AlphaMode::Blend => LinearRgb::splat((1.0 - alpha).clamp(0.0, 1.0)),
+        AlphaMode::Mask { cutoff } => LinearRgb::splat(if alpha < cutoff { 1.0 } else { 0.0 }),
     }
 }
 
