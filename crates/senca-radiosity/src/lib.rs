@@ -7,6 +7,7 @@
 //! patch makes it show 1. In photometric units a shown 1 is 1 cd/m², and the illuminance π H lux.
 
 mod error;
+pub mod form_factor;
 mod mesh;
 mod occluders;
 mod patch_polygon;
