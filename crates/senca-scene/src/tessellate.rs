@@ -16,6 +16,7 @@
 //!
 //! Flat shapes are exact with as few faces as they have sides and are not divided further.
 
+mod bend;
 mod build;
 mod contour;
 mod lathe;

@@ -370,6 +370,64 @@ fn a_rational_circle_is_round_and_closes() {
     assert_normals_fit(&mesh, "NURBS cylinder");
 }
 
+/// Control points and weights of a surface over two spans by one.
+fn rough_nurbs() -> impl Strategy<Value = NurbsSurface> {
+    let knots = |degree: usize, spans: usize| -> Vec<f64> {
+        let end = |t: usize| std::iter::repeat_n(t as f64, degree + 1);
+        end(0).chain((1..spans).map(|t| t as f64)).chain(end(spans)).collect()
+    };
+    let point = prop::array::uniform3(-1.0f64..1.0);
+    let numbers = prop::collection::vec((point, 0.1f64..4.0), 30);
+    (1usize..5, 1usize..5, numbers, any::<bool>()).prop_map(move |(pu, pv, numbers, rational)| {
+        let counts = [pu + 2, pv + 1];
+        let used = &numbers[..counts[0] * counts[1]];
+        let place = |i: usize| DVec3::new((i % counts[0]) as f64, (i / counts[0]) as f64, 0.0);
+        NurbsSurface {
+            degree: [pu, pv],
+            knots: [knots(pu, 2), knots(pv, 1)],
+            counts,
+            points: used.iter().enumerate().map(|(i, n)| place(i) + DVec3::from_array(n.0)).collect(),
+            weights: if rational { used.iter().map(|n| n.1).collect() } else { Vec::new() },
+        }
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn nurbs_stay_within_the_tolerance(surface in rough_nurbs(), tolerance in 0.02f64..0.3) {
+        let evaluator = surface.evaluator().unwrap();
+        let domain = DVec2::new(2.0, 1.0);
+        let mesh = mesh_at(&Shape::Nurbs(surface), Tolerance::World(tolerance));
+        let thinned = mesh.faces.len().div_ceil(3000).max(1);
+        for corners in mesh.faces.iter().step_by(thinned) {
+            for weights in [[1.0, 1.0, 1.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0]] {
+                let total: f64 = weights.iter().sum();
+                let mut uv = DVec2::ZERO;
+                let mut place = DVec3::ZERO;
+                for (&v, weight) in corners.iter().zip(weights) {
+                    uv += weight / total * mesh.vertices.texcoord0[v as usize].as_dvec2();
+                    place += weight / total * mesh.position(v).as_dvec3();
+                }
+                let error = place.distance(evaluator.at(uv.x * domain.x, uv.y * domain.y));
+                prop_assert!(error <= tolerance + 1e-5, "{error} > {tolerance}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_bound_of_a_rational_arc_is_not_wasteful() {
+    let faces = |tolerance| mesh_at(&Shape::Nurbs(nurbs_cylinder()), Tolerance::World(tolerance)).faces.len();
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        // A polygon of n corners is 1 - cos(pi / n) inside its circle; half of the tolerance is for v.
+        let fewest = PI / (1.0f64 - tolerance).acos();
+        let steps = faces(tolerance) as f64 / 2.0;
+        assert!(steps < 3.0 * fewest + 4.0, "{steps} instead of {fewest} at {tolerance}");
+    }
+}
+
 #[test]
 fn a_bicubic_patch_is_a_nurbs_surface_too() {
     let patch = teapot()[20].clone();
