@@ -6,6 +6,7 @@
 //! what the patch sees, weighted by form factors. A point light of intensity 1 straight above a white
 //! patch makes it show 1. In photometric units a shown 1 is 1 cd/m², and the illuminance π H lux.
 
+mod direct;
 mod error;
 pub mod form_factor;
 mod mesh;
@@ -13,6 +14,7 @@ mod occluders;
 mod patch_polygon;
 mod solution;
 
+pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
 pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
 pub use occluders::{Occluders, PolygonHit};

@@ -35,6 +35,8 @@ pub struct Occluders {
     bvh: TriangleBvh,
     /// Coordinates in the hierarchy are relative to this.
     center: DVec3,
+    /// Of a ball about the center with everything in it.
+    radius: f64,
     tolerance: f64,
     /// The blocker of each triangle.
     blocker_of: Vec<u32>,
@@ -89,7 +91,15 @@ impl Occluders {
         }
         let bvh = TriangleBvh::build(&points, &triangles, &BuildSettings::default()).map_err(too_many)?;
         let all_opaque = blockers.iter().all(|blocker| blocker.transmittance == LinearRgb::BLACK);
-        Ok(Self { bvh, center, tolerance, blocker_of, blockers, all_opaque })
+        Ok(Self {
+            bvh,
+            center,
+            radius: 0.5 * bounds.diagonal().max(f64::MIN_POSITIVE),
+            tolerance,
+            blocker_of,
+            blockers,
+            all_opaque,
+        })
     }
 
     /// Whether light passes from one place to the other.
@@ -146,6 +156,12 @@ impl Occluders {
         let (polygon, front) =
             if front || blocker.back == NONE { (blocker.polygon, front) } else { (blocker.back, true) };
         Some(PolygonHit { t: f64::from(hit.t), polygon, front })
+    }
+
+    /// A distance from `place` beyond which there is no polygon, in world units.
+    #[must_use]
+    pub fn beyond(&self, place: DVec3) -> f64 {
+        2.0 * (self.radius + place.distance(self.center))
     }
 
     /// How near to a plane a place counts as in it, in world units.

@@ -52,6 +52,21 @@ impl PatchPolygon {
         ((a + b + c) * first + (a + c + d) * second) / (3.0 * (first + second))
     }
 
+    /// The polygon in four at the middles of its edges.
+    #[must_use]
+    pub fn quarters(&self) -> [Self; 4] {
+        let [a, b, c, d] = self.corners;
+        let middle = |p: DVec3, q: DVec3| 0.5 * (p + q);
+        let (ab, bc) = (middle(a, b), middle(b, c));
+        if self.count == 3 {
+            let ca = middle(c, a);
+            return [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]].map(Self::triangle);
+        }
+        let (cd, da) = (middle(c, d), middle(d, a));
+        let inner = middle(ab, cd);
+        [[a, ab, inner, da], [ab, b, bc, inner], [inner, bc, c, cd], [da, inner, cd, d]].map(Self::quad)
+    }
+
     /// The place at (u, v) in the unit square: bilinear between the corners of a quadrilateral, where
     /// corner 0 is at (0, 0), corner 1 at (1, 0) and corner 2 at (1, 1). Of a triangle evenly, by the
     /// map that keeps shares of area.
@@ -86,6 +101,19 @@ mod tests {
         let trapezium = PatchPolygon::quad(corners.map(|[x, y]| DVec3::new(x, y, 0.0)));
         // Height of the centroid above the long side: h (a + 2b) / 3 (a + b).
         assert!((trapezium.center().y - 3.0 * (4.0 + 2.0 * 2.0) / (3.0 * 6.0)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn quarters_add_up() {
+        let trapezium = [[0.0, 0.0], [4.0, 0.0], [2.0, 3.0], [0.0, 3.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let shapes =
+            [PatchPolygon::quad(trapezium), PatchPolygon::triangle([DVec3::ZERO, DVec3::X, DVec3::Y])];
+        for shape in shapes {
+            let sum: DVec3 = shape.quarters().iter().map(|q| q.center() * q.normal_and_area().1).sum();
+            let (normal, area) = shape.normal_and_area();
+            assert!((sum / area).distance(shape.center()) < 1e-14);
+            assert!(shape.quarters().iter().all(|q| q.normal_and_area().0.distance(normal) < 1e-14));
+        }
     }
 
     #[test]
