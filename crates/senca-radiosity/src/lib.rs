@@ -14,6 +14,7 @@ mod nodes;
 mod occluders;
 mod patch_polygon;
 mod solution;
+pub mod system;
 
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
