@@ -45,6 +45,11 @@ pub trait Integrator: Sync {
     /// Red, green and blue times the share of the place that is covered, and that share.
     fn sample(&self, place: &SamplePlace, work: &mut Self::Work) -> [f32; 4];
 
+    /// [`Integrator::sample`] for many places: `out` gets one result more for each, in their order.
+    fn sample_many(&self, places: &[SamplePlace], work: &mut Self::Work, out: &mut Vec<[f32; 4]>) {
+        out.extend(places.iter().map(|place| self.sample(place, work)));
+    }
+
     /// What was done with `work` so far.
     fn counts(work: &Self::Work) -> TraceCounts;
 }
@@ -287,12 +292,9 @@ impl Film {
         let sums = &self.sums;
         let tile_of = |work: &mut I::Work, tile: &Area| {
             let before = I::counts(work);
-            let mut exposures = Vec::with_capacity(tile.pixels());
-            for (x, y) in tile.places() {
-                if progress.control.is_cancelled() {
-                    return None;
-                }
-                let mut exposure = sums[area.index(x, y)];
+            let mut exposures: Vec<Exposure> = tile.places().map(|(x, y)| sums[area.index(x, y)]).collect();
+            let mut batch = Batch::default();
+            for (pixel, (x, y)) in tile.places().enumerate() {
                 for sample in range.clone() {
                     let mut sampler = Sampler::new(Pattern::Sobol, seed, x, y, sample);
                     let (within, weight) = places.place(sample, &mut sampler);
@@ -302,10 +304,13 @@ impl Film {
                         row: y,
                         sampler,
                     };
-                    exposure.add(integrator.sample(&place, work), weight);
+                    batch.push(place, pixel, weight);
+                    if batch.is_full() {
+                        batch.develop(integrator, work, progress.control, &mut exposures)?;
+                    }
                 }
-                exposures.push(exposure);
             }
+            batch.develop(integrator, work, progress.control, &mut exposures)?;
             Some((exposures, I::counts(work).since(&before)))
         };
         let tiles = area.tiles();
@@ -346,6 +351,51 @@ impl Film {
             *pixel = [share, share, share, 1.0];
         }
         image
+    }
+}
+
+/// Samples that are taken together.
+#[derive(Debug, Default)]
+struct Batch {
+    places: Vec<SamplePlace>,
+    /// Number of the pixel that each belongs to, and its weight there.
+    pixels: Vec<(usize, f32)>,
+    colors: Vec<[f32; 4]>,
+}
+
+impl Batch {
+    /// Samples at most.
+    const MOST: usize = 1024;
+
+    fn push(&mut self, place: SamplePlace, pixel: usize, weight: f32) {
+        self.places.push(place);
+        self.pixels.push((pixel, weight));
+    }
+
+    fn is_full(&self) -> bool {
+        self.places.len() >= Self::MOST
+    }
+
+    /// Takes the samples, adds them to their pixels, in order, and forgets them; `None` when the caller
+    /// asked to stop.
+    fn develop<I: Integrator>(
+        &mut self,
+        integrator: &I,
+        work: &mut I::Work,
+        control: &Control<'_>,
+        exposures: &mut [Exposure],
+    ) -> Option<()> {
+        if control.is_cancelled() {
+            return None;
+        }
+        self.colors.clear();
+        integrator.sample_many(&self.places, work, &mut self.colors);
+        for (&(pixel, weight), &color) in self.pixels.iter().zip(&self.colors) {
+            exposures[pixel].add(color, weight);
+        }
+        self.places.clear();
+        self.pixels.clear();
+        Some(())
     }
 }
 

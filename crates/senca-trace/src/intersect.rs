@@ -77,6 +77,43 @@ pub struct SurfacePoint {
     pub surface: u32,
 }
 
+/// What a surface is, in object space, where it is simple enough for many rays to meet it at once.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// [`Sphere`].
+    Sphere {
+        /// Its radius.
+        radius: f64,
+    },
+    /// [`PlaneSurface`].
+    Plane {
+        /// Length of its edges, where it has some.
+        size: Option<f64>,
+    },
+    /// [`Disc`].
+    Disc {
+        /// Its radius.
+        radius: f64,
+        /// That of the hole.
+        inner: f64,
+    },
+    /// A few flat triangles, by part.
+    Triangles(Vec<FlatTriangle>),
+    /// Anything else.
+    Other,
+}
+
+/// A triangle with nothing but a picture on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatTriangle {
+    /// Counter-clockwise seen from its front.
+    pub corners: [DVec3; 3],
+    /// Texture coordinates of set 0 at the corners.
+    pub texcoords: [DVec2; 3],
+    /// Surface number.
+    pub surface: u32,
+}
+
 /// A surface in its own object space that rays can meet.
 ///
 /// Rays that are not valid ([`Ray::is_valid`]) meet nothing.
@@ -118,6 +155,11 @@ pub trait Intersect: Send + Sync + std::fmt::Debug {
     fn closest_in_part(&self, part: u32, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
         let _ = part;
         self.closest(ray, counters)
+    }
+
+    /// What the surface is, for those who meet it with many rays at once.
+    fn form(&self) -> Form {
+        Form::Other
     }
 
     /// How far computed places may be from where rays meet the surface, as a share of the largest

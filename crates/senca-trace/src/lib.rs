@@ -27,9 +27,9 @@ pub use film::{
     Area, Film, FilmReport, FilmSettings, Fingerprint, Integrator, SamplePlace, SavedFilmError, Watch,
 };
 pub use intersect::{
-    Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, Frustum,
-    Implicit, Intersect, Operation, PatchSurface, PlaneSurface, Polygon, Prism, Revolution, RootMethod,
-    Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
+    Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, FlatTriangle,
+    Form, Frustum, Implicit, Intersect, Operation, PatchSurface, PlaneSurface, Polygon, Prism, Revolution,
+    RootMethod, Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
 };
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use path::PathSettings;

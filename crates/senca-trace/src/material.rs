@@ -5,7 +5,7 @@
 //! rasterizing pipeline shades with the same numbers.
 
 use senca_math::LinearRgb;
-use senca_math::glam::{Vec3, Vec4};
+use senca_math::glam::{DVec2, Vec3, Vec4};
 use senca_scene::{AlphaMode, ColorSpace, Filter, Material, Reflection, Scene, TextureRef};
 use senca_shading::{PhongConstants, perturb_normal, with_occlusion};
 
@@ -156,6 +156,29 @@ impl<'s> MaterialTable<'s> {
         &self.entry(material).constant
     }
 
+    /// How many there are, the default one included.
+    pub(crate) fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// The texel that multiplies the base colour where coordinates of set 0 are `texcoord`.
+    #[inline]
+    pub(crate) fn base_texel(&self, material: usize, texcoord: DVec2) -> Option<[f32; 4]> {
+        let texture = self.entry(material).base.as_ref()?;
+        Some(texture.sample(&[texcoord, DVec2::ZERO]))
+    }
+
+    /// The material where it is the same everywhere, but for a picture that multiplies its base colour;
+    /// `None` where it is not, and where light passes.
+    pub(crate) fn simple(&self, material: usize) -> Option<(&MaterialPoint, Option<&BoundTexture<'s>>)> {
+        let entry = self.entry(material);
+        let varies = [&entry.second, &entry.emission, &entry.normal, &entry.occlusion];
+        let simple = varies.iter().all(|texture| texture.is_none())
+            && entry.alpha_mode == AlphaMode::Opaque
+            && !entry.constant.transmits();
+        simple.then_some((&entry.constant, entry.base.as_ref()))
+    }
+
     /// Whether the light that the material gives off differs from place to place: by a texture, or
     /// because the surface is not there everywhere.
     #[must_use]
@@ -171,7 +194,7 @@ impl<'s> MaterialTable<'s> {
 
 /// The shading normal on the side that the ray comes from. The surface itself decides which side that
 /// is: an interpolated normal may lean over the rim.
-fn seen_normal(at: &Interaction) -> Vec3 {
+pub(crate) fn seen_normal(at: &Interaction) -> Vec3 {
     let normal = at.shading_normal.as_vec3();
     if at.entering { normal } else { -normal }
 }

@@ -8,23 +8,29 @@ use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 use senca_scene::{Mesh, Topology};
 
+use crate::intersect::{FlatTriangle, Form, ray_triangle};
 use crate::{Counters, Crossing, Crossings, Intersect, Ray, SurfacePoint};
 
 /// Share of the largest coordinate by which single precision, in which points are stored, may move
 /// things.
 const PRECISION: f64 = 1.0 / (1 << 21) as f64;
+/// Meshes of up to so many triangles are met in double precision, one triangle after the other.
+const FEW: usize = 16;
 /// Directions with a largest component in this range keep their digits in single precision.
 const PLAIN: std::ops::Range<f64> = 1e-30..1e30;
 
 /// A mesh of triangles.
 ///
 /// Rays meet its triangles in single precision, in which its points are stored, without gaps between
-/// neighbours; the place on the triangle is then found in double precision.
+/// neighbours; the place on the triangle is then found in double precision. Walls, boxes and others of
+/// few triangles, which are often large, are met in double precision.
 #[derive(Debug)]
 pub(crate) struct MeshSurface<'s> {
     mesh: Cow<'s, Mesh>,
     bounds: Aabb,
     hierarchy: Option<TriangleBvh>,
+    /// Corners of the triangles where there are few.
+    few: Option<Box<[[DVec3; 3]]>>,
     closed: OnceLock<bool>,
 }
 
@@ -32,8 +38,9 @@ impl<'s> MeshSurface<'s> {
     /// The triangles of `mesh`, which holds together and has no other faces. Without a hierarchy it is
     /// asked part by part.
     pub(crate) fn of_mesh(mesh: Cow<'s, Mesh>, hierarchy: bool) -> Result<Self, BuildError> {
-        let hierarchy = hierarchy.then(|| hierarchy_of(&mesh)).transpose()?;
-        Ok(Self { bounds: mesh.bounds(), mesh, hierarchy, closed: OnceLock::new() })
+        let few = (mesh.faces.corners.len() <= 3 * FEW).then(|| corners_of(&mesh));
+        let hierarchy = (hierarchy && few.is_none()).then(|| hierarchy_of(&mesh)).transpose()?;
+        Ok(Self { bounds: mesh.bounds(), mesh, hierarchy, few, closed: OnceLock::new() })
     }
 
     /// Vertex numbers of a triangle's corners.
@@ -46,6 +53,12 @@ impl<'s> MeshSurface<'s> {
     fn points(&self, triangle: u32) -> [Vec3; 3] {
         self.corners(triangle).map(|c| self.mesh.position(c))
     }
+}
+
+/// Corners of all triangles.
+fn corners_of(mesh: &Mesh) -> Box<[[DVec3; 3]]> {
+    let triangles = mesh.faces.corners.as_chunks::<3>().0;
+    triangles.iter().map(|corners| corners.map(|c| mesh.position(c).as_dvec3())).collect()
 }
 
 fn hierarchy_of(mesh: &Mesh) -> Result<TriangleBvh, BuildError> {
@@ -176,7 +189,7 @@ impl Intersect for MeshSurface<'_> {
         let normal = (b - a).cross(c - a).normalize_or(-ray.direction.normalize_or_zero());
         let smooth = blend(&vertices.normal, corners, weights).map(Vec3::as_dvec3);
         let shading_normal = smooth.and_then(DVec3::try_normalize).unwrap_or(normal);
-        let texcoord = |set: &[Vec2]| blend(set, corners, weights).unwrap_or_default().as_dvec2();
+        let texcoord = |set: &[Vec2]| texcoord(set, corners, uv);
         let tangent = blend(&vertices.tangent, corners, weights).unwrap_or(Vec4::ZERO);
         SurfacePoint {
             point: a + uv.x * (b - a) + uv.y * (c - a),
@@ -204,22 +217,53 @@ impl Intersect for MeshSurface<'_> {
 
     fn closest_in_part(&self, part: u32, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
         counters.tests += 1;
+        if let Some(few) = &self.few {
+            let (t, uv) = ray_triangle(ray, few[part as usize]).filter(|_| ray.is_valid())?;
+            return ray.admits(t).then_some(Crossing { t, part, uv });
+        }
         let single = Single::new(ray);
         let one = BruteForce { points: &self.points(part), triangles: &[[0, 1, 2]] };
         let hit = TriangleHit { triangle: part, ..one.closest(&single.ray)? };
         Some(single.crossing(&hit)).filter(|crossing| ray.admits(crossing.t))
     }
 
+    /// Flat pieces that have nothing but texture coordinates.
+    fn form(&self) -> Form {
+        let vertices = &self.mesh.vertices;
+        let bare = vertices.color.is_empty() && vertices.tangent.is_empty() && vertices.texcoord1.is_empty();
+        let parts = 0..self.few.as_ref().map_or(0, |few| few.len()) as u32;
+        if !bare || parts.is_empty() || parts.clone().any(|part| !self.is_flat(part)) {
+            return Form::Other;
+        }
+        let triangle = |part: u32| FlatTriangle {
+            corners: self.points(part).map(Vec3::as_dvec3),
+            texcoords: self.corners(part).map(|corner| {
+                vertices.texcoord0.get(corner as usize).copied().unwrap_or_default().as_dvec2()
+            }),
+            surface: self.mesh.faces.surface_of(part as usize),
+        };
+        Form::Triangles(parts.map(triangle).collect())
+    }
+
     fn precision(&self) -> f64 {
-        PRECISION
+        if self.few.is_some() { 1e-10 } else { PRECISION }
     }
 
     fn memory_bytes(&self) -> usize {
-        self.hierarchy.as_ref().map_or(0, TriangleBvh::memory_bytes)
+        let few = self.few.as_ref().map_or(0, |few| size_of_val(&**few));
+        few + self.hierarchy.as_ref().map_or(0, TriangleBvh::memory_bytes)
     }
 }
 
 impl MeshSurface<'_> {
+    /// Whether the normals to shade a triangle with are those of the triangle itself.
+    fn is_flat(&self, triangle: u32) -> bool {
+        let [a, b, c] = self.points(triangle).map(Vec3::as_dvec3);
+        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        let own = |corner: u32| self.mesh.vertices.normal.get(corner as usize);
+        self.corners(triangle).into_iter().all(|c| own(c).is_none_or(|n| n.distance(normal) < 1e-6))
+    }
+
     /// The nearest crossing, by asking every triangle.
     fn closest_of_all(&self, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {
         let mut ray = *ray;
@@ -238,6 +282,13 @@ impl MeshSurface<'_> {
 fn add(counters: &mut Counters, counts: TraversalCounts) {
     counters.nodes += counts.nodes;
     counters.tests += counts.triangles;
+}
+
+/// Texture coordinates where the second and third corner have the weights `uv`. In double precision: on
+/// a large floor they are large, and what counts is behind the point.
+fn texcoord(set: &[Vec2], corners: [u32; 3], uv: DVec2) -> DVec2 {
+    let [a, b, c] = corners.map(|corner| set.get(corner as usize).copied().unwrap_or_default().as_dvec2());
+    a + uv.x * (b - a) + uv.y * (c - a)
 }
 
 /// Weighted mean of the corners' values of an attribute, where there is one.

@@ -61,6 +61,16 @@ impl PrimaryRays {
         self
     }
 
+    /// Whether rays go through a lens that is open.
+    pub(crate) fn has_lens(&self) -> bool {
+        self.lens.is_some()
+    }
+
+    /// From places of the picture in pixels to homogeneous places of the world on the near plane.
+    pub(crate) fn world_from_pixel(&self) -> &DMat4 {
+        &self.world_from_pixel
+    }
+
     /// The ray of a sample: with a lens, from a random place on it.
     #[must_use]
     #[inline]

@@ -2,14 +2,14 @@
 
 mod build;
 mod object;
-mod spawn;
+pub(crate) mod spawn;
 #[cfg(test)]
 mod tests;
 
 use senca_math::glam::{DVec2, DVec3, Vec4};
 use senca_scene::{Scene, TessellationSettings, Warning};
 
-use crate::accel::{self, AccelSettings, Accelerator};
+use crate::accel::{self, Accel, AccelSettings, Accelerator};
 use crate::{Counters, Crossing, Ray, TraceError};
 
 pub use object::Object;
@@ -80,6 +80,7 @@ pub struct World<'s> {
     objects: Vec<Object<'s>>,
     accelerator: Box<dyn Accelerator>,
     epsilon: Option<f64>,
+    accel: Accel,
     warnings: Vec<Warning>,
 }
 
@@ -102,7 +103,8 @@ impl<'s> World<'s> {
         }
         let (objects, warnings) = build::objects(scene, settings)?;
         let accelerator = accel::build(scene, &objects, &settings.accel)?;
-        Ok(Self { scene, objects, accelerator, epsilon: settings.epsilon, warnings })
+        let (epsilon, accel) = (settings.epsilon, settings.accel.kind);
+        Ok(Self { scene, objects, accelerator, epsilon, accel, warnings })
     }
 
     /// The scene.
@@ -115,6 +117,16 @@ impl<'s> World<'s> {
     #[must_use]
     pub fn objects(&self) -> &[Object<'s>] {
         &self.objects
+    }
+
+    /// Which accelerator it has.
+    pub(crate) fn accel(&self) -> Accel {
+        self.accel
+    }
+
+    /// See [`WorldSettings::epsilon`].
+    pub(crate) fn epsilon(&self) -> Option<f64> {
+        self.epsilon
     }
 
     /// What was left out of the scene, and why.

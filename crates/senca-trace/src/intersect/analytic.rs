@@ -6,6 +6,7 @@
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3, Vec4};
 
+use super::Form;
 use crate::{Counters, Crossing, Crossings, Intersect, Ray, SurfacePoint};
 
 /// A surface whose crossings with a line follow from its equation.
@@ -31,6 +32,11 @@ pub(crate) trait Analytic: Send + Sync + std::fmt::Debug {
 
     /// See [`Intersect::is_closed`].
     fn is_closed(&self) -> bool;
+
+    /// See [`Intersect::form`].
+    fn form(&self) -> Form {
+        Form::Other
+    }
 }
 
 /// The nearest of all crossings that the ray admits.
@@ -77,6 +83,10 @@ impl<S: Analytic> Intersect for S {
 
     fn is_closed(&self) -> bool {
         Analytic::is_closed(self)
+    }
+
+    fn form(&self) -> Form {
+        Analytic::form(self)
     }
 }
 

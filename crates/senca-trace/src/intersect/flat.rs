@@ -3,6 +3,7 @@
 use senca_math::glam::{DVec2, DVec3};
 use senca_math::{Aabb, newell_normal};
 
+use super::Form;
 use super::analytic::{Analytic, Chart, disc_chart};
 use super::region::Region;
 use crate::textbook::{dropped_coordinate, reduced};
@@ -60,6 +61,10 @@ impl Analytic for Disc {
     fn is_closed(&self) -> bool {
         false
     }
+
+    fn form(&self) -> Form {
+        Form::Disc { radius: self.radius, inner: self.inner }
+    }
 }
 
 /// The plane y = 0, endless or a square around the origin, facing +y.
@@ -102,6 +107,10 @@ impl Analytic for PlaneSurface {
 
     fn is_closed(&self) -> bool {
         false
+    }
+
+    fn form(&self) -> Form {
+        Form::Plane { size: self.size }
     }
 }
 

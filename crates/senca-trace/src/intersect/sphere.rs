@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3};
 
+use super::Form;
 use super::analytic::{Analytic, Chart, turn_from_back};
 use crate::{Counters, Crossing, Crossings, Intersect, Ray, SurfacePoint};
 
@@ -74,6 +75,10 @@ impl Intersect for Sphere {
 
     fn is_closed(&self) -> bool {
         true
+    }
+
+    fn form(&self) -> Form {
+        Form::Sphere { radius: self.radius }
     }
 }
 

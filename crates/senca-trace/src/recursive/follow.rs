@@ -8,8 +8,10 @@ use super::media::{Media, Medium};
 use super::optics::fresnel_share;
 use super::recorder::{Met, Recorder, ShadowRay, Unrecorded, Unsent};
 use super::reflector::Reflector;
+use super::stream::Desk;
 use super::{Backs, Tracer};
 use crate::film::{Integrator, SamplePlace};
+use crate::material::seen_normal;
 use crate::textbook::{reflect, refract};
 use crate::{Interaction, MaterialPoint, Pattern, Ray, Sampler, TraceCounts};
 
@@ -61,6 +63,7 @@ pub(crate) struct Pending {
 #[derive(Debug, Default)]
 pub struct Work {
     pending: Vec<Pending>,
+    pub(super) desk: Desk,
     /// What it did.
     pub counts: TraceCounts,
 }
@@ -162,7 +165,26 @@ impl Tracer<'_> {
             parent: u32::MAX,
         });
         let Root { row, sampler, .. } = root;
-        let mut tree = Tree { row, sampler, work, recorder, number: 0, sum: Sum::default() };
+        let tree = Tree { row, sampler, work, recorder, number: 0, sum: Sum::default() };
+        self.grow(tree)
+    }
+
+    /// What a ray of a tree brings, with all that come of it. `number` counts the rays before it.
+    pub(super) fn subtree(
+        &self,
+        pending: Pending,
+        number: u32,
+        place: &SamplePlace,
+        work: &mut Work,
+    ) -> [f32; 4] {
+        work.pending.clear();
+        work.pending.push(pending);
+        let (row, sampler, recorder) = (Some(place.row), place.sampler, &mut Unrecorded);
+        self.grow(Tree { row, sampler, work, recorder, number, sum: Sum::default() })
+    }
+
+    /// Follows the rays that wait.
+    fn grow<R: Recorder>(&self, mut tree: Tree<'_, R>) -> [f32; 4] {
         while let Some(pending) = tree.work.pending.pop() {
             if tree.number == MAX_RAYS_PER_SAMPLE {
                 break;
@@ -227,7 +249,7 @@ impl Tracer<'_> {
 
     /// Whether a surface is not seen because it shows its back.
     #[inline]
-    fn is_left_out(&self, at: &Interaction) -> bool {
+    pub(super) fn is_left_out(&self, at: &Interaction) -> bool {
         if at.entering {
             return false;
         }
@@ -308,8 +330,14 @@ impl Tracer<'_> {
     /// Random numbers for one place of one light, seen from where the ray being followed ends.
     #[inline]
     fn sampler_of_light<R>(&self, tree: &Tree<'_, R>, light: usize, place: u32) -> Sampler {
-        let mut sampler = tree.sampler;
-        let number = tree.number.wrapping_mul(self.lights.len() as u32).wrapping_add(light as u32);
+        self.sampler_at(&tree.sampler, tree.number, light, place)
+    }
+
+    /// The same for ray `number` of a tree.
+    #[inline]
+    pub(super) fn sampler_at(&self, sampler: &Sampler, number: u32, light: usize, place: u32) -> Sampler {
+        let mut sampler = *sampler;
+        let number = number.wrapping_mul(self.lights.len() as u32).wrapping_add(light as u32);
         sampler.set_dimension(
             FIRST_LIGHT_DIMENSION.wrapping_add(number.wrapping_mul(MAX_PLACES)).wrapping_add(place),
         );
@@ -360,7 +388,7 @@ impl Tracer<'_> {
     pub(super) fn children(&self, direction: DVec3, seen: &Seen, media: &Media) -> Children {
         let Seen { at, material, .. } = seen;
         let face = if at.entering { at.normal } else { -at.normal };
-        let normal = bent_normal(material.normal.as_dvec3(), face, direction);
+        let normal = bent_normal(self.seen_normal(at, material), face, direction);
         let cos1 = -normal.dot(direction);
         let crossing = if material.transmits() { self.cross(at, material, media) } else { None };
         let (mirror, transmission) = (material.mirror, material.transmission);
@@ -392,6 +420,15 @@ impl Tracer<'_> {
         Children { reflected, transmitted }
     }
 
+    /// The normal to shade with, in all its digits where no map has bent it: mirrors enlarge errors.
+    #[inline]
+    pub(super) fn seen_normal(&self, at: &Interaction, material: &MaterialPoint) -> DVec3 {
+        if material.normal != seen_normal(at) {
+            return material.normal.as_dvec3();
+        }
+        if at.entering { at.shading_normal } else { -at.shading_normal }
+    }
+
     /// What becomes of the media of a ray that goes through a surface.
     fn cross(&self, at: &Interaction, material: &MaterialPoint, media: &Media) -> Option<MediaCrossing> {
         if !self.bodies[at.object as usize] {
@@ -415,6 +452,10 @@ impl Integrator for Tracer<'_> {
 
     fn sample(&self, place: &SamplePlace, work: &mut Work) -> [f32; 4] {
         Self::sample(self, place, work)
+    }
+
+    fn sample_many(&self, places: &[SamplePlace], work: &mut Work, out: &mut Vec<[f32; 4]>) {
+        self.sample_all(places, work, out);
     }
 
     fn counts(work: &Work) -> TraceCounts {

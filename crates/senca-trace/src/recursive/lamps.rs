@@ -78,6 +78,17 @@ fn form_of(kind: LightKind, world_from_light: &DMat4) -> Form {
 }
 
 impl TracedLight {
+    /// The way to the light and what it sends, where that is the same from everywhere.
+    pub(crate) fn simple(&self) -> Option<(ToLight, LinearRgb)> {
+        let to_light = match (self.form, self.light.lamp) {
+            (Form::Place(place), Lamp::Point) => ToLight::Place(place),
+            (Form::Far(direction), Lamp::Parallel) => ToLight::Far(direction),
+            _ => return None,
+        };
+        let steady = self.light.attenuation == senca_scene::Attenuation::None;
+        steady.then_some((to_light, self.light.color))
+    }
+
     /// How many places of the light are looked at when an area light gets `per_side` along each side;
     /// 0 stands for its middle alone.
     #[inline]

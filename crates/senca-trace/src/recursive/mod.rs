@@ -36,6 +36,7 @@ pub(crate) mod recorder;
 mod reflector;
 mod settings;
 mod shadow;
+mod stream;
 #[cfg(test)]
 mod tests;
 
@@ -47,6 +48,7 @@ use crate::{Counters, Crossings, MaterialTable, PrimaryRays, Ray, SamplePlace, W
 use background::Sky;
 use lamps::{TracedLight, lights_of};
 use media::{Media, Medium};
+use stream::Stream;
 
 pub(crate) use follow::Pending;
 pub use follow::{MAX_RAYS_PER_SAMPLE, RayKind, Work};
@@ -69,6 +71,8 @@ pub struct Tracer<'w> {
     /// The bodies that the eye of a central view is in.
     media_at_eye: Media,
     blockers: Blockers,
+    /// The fast way, where the scene can go it.
+    stream: Option<Stream>,
 }
 
 /// What kinds of surfaces shadow rays have to tell apart.
@@ -109,11 +113,21 @@ impl<'w> Tracer<'w> {
             media_at_eye: Media::default(),
             blockers: blockers_of(world, &materials, settings),
             materials,
+            stream: None,
         };
         if let ViewKind::Central { eye_world } = view.kind {
             tracer.media_at_eye = tracer.media_at(eye_world, &mut Counters::default());
         }
+        tracer.stream = Stream::of(&tracer);
         tracer
+    }
+
+    /// The same following tree after tree of rays, each by itself: the plain twin of the default, which
+    /// follows many rays at once.
+    #[must_use]
+    pub fn one_by_one(mut self) -> Self {
+        self.stream = None;
+        self
     }
 
     /// The same through a lens: what is not at its focus distance is blurred.

@@ -214,7 +214,7 @@ impl<'s> Object<'s> {
     }
 
     /// How far, in the world, a computed point of the surface may be from where rays meet it.
-    pub(super) fn error_at(&self, point_object: DVec3) -> f64 {
+    pub(crate) fn error_at(&self, point_object: DVec3) -> f64 {
         let largest = if self.is_endless() { point_object.abs().max_element() } else { self.extent };
         self.scale * self.surface.precision() * largest
     }

@@ -13,9 +13,9 @@ use super::{Interaction, World};
 use crate::Ray;
 
 /// How many times the error a ray starts beside the surface.
-const MARGIN: f64 = 2.0;
+pub(crate) const MARGIN: f64 = 2.0;
 /// Share of the way to a target that counts: what is at the target itself does not block.
-const UP_TO: f64 = 1.0 - 1.0 / (1u64 << 24) as f64;
+pub(crate) const UP_TO: f64 = 1.0 - 1.0 / (1u64 << 24) as f64;
 
 impl World<'_> {
     /// The half-line from a place on a surface along `direction`, of any length but zero, that does not

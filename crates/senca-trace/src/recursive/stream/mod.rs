@@ -1,0 +1,354 @@
+//! Many rays at once: the fast twin of the tracer that follows tree after tree.
+//!
+//! The rays of a batch of samples are followed level by level. Of all rays of a level, eight at a time,
+//! first what they meet is found ([`forms`]), then they are sorted by what that is, and what the places
+//! there send back and send on is computed ([`shade`]), the latter as the rays of the next level. It is
+//! the same algorithm in the same precision as [`Tracer::sample`]'s, so results differ by rounding only,
+//! and the same samples are taken.
+//!
+//! Rays that meet what is not done here, such as glass or a blended surface, are handed over to the
+//! other tracer, with all that comes of them. That depends on the scene alone, and no ray's result
+//! depends on the rays beside it, so neither the picture's tiles nor threads matter.
+//!
+//! Sources: Wald et al. 2001 on packets; Wald et al. 2007 and Áfra et al. 2016 on sorted streams.
+
+mod forms;
+mod lanes;
+mod looks;
+mod power;
+mod rays;
+mod shade;
+#[cfg(test)]
+mod tests;
+
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use senca_math::glam::{DVec3, DVec4};
+use senca_math::{LinearRgb, ViewKind};
+
+use super::follow::{MAX_RAYS_PER_SAMPLE, Pending, RayKind, Work};
+use super::media::Media;
+use super::{Blockers, Tracer};
+use crate::{Accel, Hit, SamplePlace, TraceCounts};
+use forms::{Forms, Kind, NO_HIT};
+use lanes::{F, LANES, V, first_lanes};
+use looks::{Lamp, Look, Way};
+use rays::{Packet, Rays};
+
+/// Samples that are followed together.
+const BATCH: usize = 1024;
+
+/// Most surfaces that packets of rays are tested against one after the other.
+const MOST_FORMS: usize = 48;
+
+/// The scene as many rays at once see it.
+#[derive(Debug)]
+pub(super) struct Stream {
+    level: Level,
+    forms: Forms,
+    looks: Vec<Look>,
+    lamps: Vec<Lamp>,
+    /// Whether there are few enough surfaces to test packets against all.
+    is_flat: bool,
+    /// Whether shadow rays meet surfaces that have to be asked how much they block.
+    asks: bool,
+}
+
+/// The rows of numbers of a batch. Kept from one batch to the next.
+#[derive(Debug, Default)]
+pub(super) struct Desk {
+    rays: Rays,
+    /// Rays of the next level.
+    next: Rays,
+    /// Rays that go on behind a surface that they do not see.
+    again: Rays,
+    /// Of each ray, where it meets something, the rank of that, or -1, and the hit, where it is of
+    /// something that has no rank of its own.
+    t: Vec<f64>,
+    rank: Vec<f64>,
+    hits: Vec<Hit>,
+    /// Numbers of the rays that meet a ball, a sheet, or something else, and of those handed over.
+    balls: Vec<u32>,
+    sheets: Vec<u32>,
+    general: Vec<u32>,
+    handed: Vec<u32>,
+    /// What each sample has gathered.
+    sums: Vec<[f32; 4]>,
+}
+
+impl Desk {
+    fn begin(&mut self, count: usize) {
+        for rays in [&mut self.rays, &mut self.next, &mut self.again] {
+            rays.clear(count);
+        }
+        if self.t.len() < count + LANES {
+            self.t.resize(count + LANES, 0.0);
+            self.rank.resize(count + LANES, 0.0);
+            self.hits.resize(count + LANES, NO_HIT);
+        }
+        self.sums.clear();
+        self.sums.resize(count, [0.0; 4]);
+    }
+
+    #[inline(always)]
+    fn add(&mut self, slot: usize, light: LinearRgb, alpha: f32) {
+        let sum = &mut self.sums[slot];
+        *sum = [sum[0] + light.r, sum[1] + light.g, sum[2] + light.b, sum[3] + alpha];
+    }
+}
+
+/// A pass over the rays of one level.
+struct Pass<'a> {
+    nest: u32,
+    places: &'a [SamplePlace],
+    desk: &'a mut Desk,
+    counts: &'a mut TraceCounts,
+}
+
+impl Stream {
+    /// For the rays of `tracer`; `None` where they have to be followed one by one: with another
+    /// accelerator than the default, so that it can be compared, with an epsilon of the caller's, and in
+    /// a transparent body.
+    pub(super) fn of(tracer: &Tracer<'_>) -> Option<Self> {
+        let world = tracer.world;
+        let any_body = tracer.bodies.iter().any(|body| *body);
+        let starts_inside = match tracer.view.kind {
+            ViewKind::Central { .. } => tracer.media_at_eye.current().is_some(),
+            ViewKind::Parallel { .. } => any_body,
+        };
+        if world.accel() != Accel::Bvh || world.epsilon().is_some() || starts_inside {
+            return None;
+        }
+        let forms = Forms::of(world.objects());
+        let materials = tracer.materials.len();
+        Some(Self {
+            level: Level::new(),
+            is_flat: forms.len() <= MOST_FORMS,
+            forms,
+            looks: (0..materials).map(|material| Look::of(tracer, material)).collect(),
+            lamps: (0..tracer.lights.len()).map(|light| Lamp::of(tracer, light)).collect(),
+            asks: tracer.blockers != Blockers::All,
+        })
+    }
+}
+
+impl Tracer<'_> {
+    /// [`Tracer::sample`] for many places; `out` gets one result for each, in their order.
+    pub(super) fn sample_all(&self, places: &[SamplePlace], work: &mut Work, out: &mut Vec<[f32; 4]>) {
+        let Some(stream) = &self.stream else {
+            out.extend(places.iter().map(|place| self.sample(place, work)));
+            return;
+        };
+        let mut desk = std::mem::take(&mut work.desk);
+        for places in places.chunks(BATCH) {
+            self.batch(stream, places, work, &mut desk);
+            out.extend_from_slice(&desk.sums);
+        }
+        work.desk = desk;
+    }
+
+    fn batch(&self, stream: &Stream, places: &[SamplePlace], work: &mut Work, desk: &mut Desk) {
+        desk.begin(places.len());
+        dispatch!(stream.level, simd => self.primaries(simd, places, desk));
+        work.counts.rays.primary += places.len() as u64;
+        for nest in 0..MAX_RAYS_PER_SAMPLE {
+            while desk.rays.len() > 0 {
+                let pass = Pass { nest, places, desk: &mut *desk, counts: &mut work.counts };
+                dispatch!(stream.level, simd => self.pass(simd, stream, pass));
+                self.hand_over(nest, places, desk, work);
+                std::mem::swap(&mut desk.rays, &mut desk.again);
+                desk.again.clear(places.len());
+            }
+            std::mem::swap(&mut desk.rays, &mut desk.next);
+            desk.next.clear(places.len());
+            if desk.rays.len() == 0 {
+                return;
+            }
+            work.counts.rays.reflected += desk.rays.len() as u64;
+        }
+    }
+
+    /// The rays through the places.
+    #[inline(always)]
+    fn primaries<S: Simd>(&self, simd: S, places: &[SamplePlace], desk: &mut Desk) {
+        for (number, eight) in places.chunks(LANES).enumerate() {
+            let place = |lane: usize| eight[lane.min(eight.len() - 1)];
+            let there = first_lanes(simd, eight.len());
+            let one = F::splat(simd, 1.0);
+            let slot = F::from_fn(simd, |lane| (number * LANES + lane) as f64);
+            let rays = if self.rays.has_lens() {
+                eight_rays(simd, |lane| self.rays.sample(&place(lane)))
+            } else {
+                let x = F::from_fn(simd, |lane| place(lane).x);
+                let y = F::from_fn(simd, |lane| place(lane).y);
+                self.through(simd, x, y)
+            };
+            let [origin, direction] = rays;
+            let distance = match self.view.kind {
+                ViewKind::Central { .. } => F::splat(simd, 0.0),
+                ViewKind::Parallel { .. } => self.depth(simd, origin),
+            };
+            // Rays without a direction meet nothing.
+            let is_ray = direction.dot(direction).simd_gt(F::splat(simd, 0.5));
+            let t_min = is_ray.select(F::splat(simd, 0.0), F::splat(simd, f64::INFINITY));
+            let weight = [one; 3];
+            desk.rays.push(there, &Packet { origin, direction, t_min, weight, distance, slot });
+        }
+    }
+
+    /// [`crate::PrimaryRays::through`] for eight places.
+    #[inline(always)]
+    fn through<S: Simd>(&self, simd: S, x: F<S>, y: F<S>) -> [V<S>; 2] {
+        let m = self.rays.world_from_pixel();
+        let row = |k: usize| {
+            let DVec4 { x: a, y: b, w: c, .. } = m.row(k);
+            F::splat(simd, a) * x + F::splat(simd, b) * y + F::splat(simd, c)
+        };
+        let w = row(3);
+        let near = V { x: row(0) / w, y: row(1) / w, z: row(2) / w };
+        match self.view.kind {
+            ViewKind::Central { eye_world } => {
+                let eye = V::splat(simd, eye_world);
+                let way = near.sub(eye);
+                [eye, way.times(F::splat(simd, 1.0) / way.dot(way).sqrt())]
+            }
+            ViewKind::Parallel { direction_world } => [near, V::splat(simd, direction_world)],
+        }
+    }
+
+    /// Distance of places in front of the eye of a parallel view.
+    #[inline(always)]
+    fn depth<S: Simd>(&self, simd: S, place: V<S>) -> F<S> {
+        let row = self.view.view_from_world.row(2);
+        -(V::splat(simd, row.truncate()).dot(place) + F::splat(simd, row.w))
+    }
+
+    /// Everything that the rays of the desk bring by themselves, and the rays that come of them.
+    #[inline(always)]
+    fn pass<S: Simd>(&self, simd: S, stream: &Stream, mut pass: Pass<'_>) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.find(simd, stream, &mut pass),
+        );
+        self.sort(stream, &mut pass);
+        simd.vectorize(
+            #[inline(always)]
+            || self.balls(simd, stream, &mut pass),
+        );
+        simd.vectorize(
+            #[inline(always)]
+            || self.sheets(simd, stream, &mut pass),
+        );
+        simd.vectorize(
+            #[inline(always)]
+            || self.general(simd, stream, &mut pass),
+        );
+    }
+
+    /// What the rays meet.
+    #[inline(always)]
+    fn find<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
+        let Desk { rays, t, rank, hits, .. } = &mut *pass.desk;
+        let counters = &mut pass.counts.work;
+        if !stream.is_flat {
+            return self.find_one_by_one(stream, pass);
+        }
+        for first in (0..rays.len()).step_by(LANES) {
+            let (packet, live) = rays.load(simd, first);
+            let hits = &mut hits[first..][..LANES];
+            let found = stream.forms.closest(simd, self.world.objects(), &packet, live, hits, counters);
+            found.t.store_slice(&mut t[first..][..LANES]);
+            found.rank.store_slice(&mut rank[first..][..LANES]);
+        }
+    }
+
+    /// The same where there are many surfaces.
+    fn find_one_by_one(&self, stream: &Stream, pass: &mut Pass<'_>) {
+        let Desk { rays, t, rank, hits, .. } = &mut *pass.desk;
+        for number in 0..rays.len() {
+            let hit = self.world.closest(&rays.ray(number), &mut pass.counts.work);
+            (t[number], rank[number]) = match hit {
+                None => (f64::INFINITY, -1.0),
+                Some(hit) => {
+                    hits[number] = hit;
+                    (hit.crossing.t, f64::from(stream.forms.rank_of(&hit)))
+                }
+            };
+        }
+    }
+
+    /// Sorts rays by what they meet. Those that meet nothing are done with.
+    fn sort(&self, stream: &Stream, pass: &mut Pass<'_>) {
+        for list in [&mut pass.desk.balls, &mut pass.desk.sheets, &mut pass.desk.general] {
+            list.clear();
+        }
+        for number in 0..pass.desk.rays.len() {
+            let rank = pass.desk.rank[number];
+            if rank < 0.0 {
+                self.leave_stream(number, pass);
+                continue;
+            }
+            let of = &stream.forms.ranks[rank as usize];
+            let list = match (of.kind, stream.looks[of.material].way) {
+                (Kind::Ball, Way::Constant) => &mut pass.desk.balls,
+                (Kind::Sheet, Way::Constant | Way::Textured) => &mut pass.desk.sheets,
+                _ => &mut pass.desk.general,
+            };
+            list.push(number as u32);
+        }
+    }
+
+    /// A ray sees nothing but the background.
+    fn leave_stream(&self, number: usize, pass: &mut Pass<'_>) {
+        let rays = &pass.desk.rays;
+        let (slot, [r, g, b]) = (rays.slot(number), rays.weight(number).map(|w| w as f32));
+        let (seen, alpha) = match pass.nest {
+            0 => {
+                let direction = rays.ray(number).direction;
+                let seen = self.sky.in_row(pass.places[slot].row, direction).unwrap_or(LinearRgb::BLACK);
+                (seen, if self.sky.is_transparent() { 0.0 } else { 1.0 })
+            }
+            _ => (self.sky.towards(rays.ray(number).direction), 0.0),
+        };
+        pass.desk.add(slot, LinearRgb::new(r, g, b) * seen, alpha);
+    }
+
+    /// Has the other tracer follow what is not done here.
+    fn hand_over(&self, nest: u32, places: &[SamplePlace], desk: &mut Desk, work: &mut Work) {
+        let handed = std::mem::take(&mut desk.handed);
+        for &number in &handed {
+            let (rays, number) = (&desk.rays, number as usize);
+            let slot = rays.slot(number);
+            let [r, g, b] = rays.weight(number).map(|w| w as f32);
+            let pending = Pending {
+                ray: rays.ray(number),
+                kind: if nest == 0 { RayKind::Primary } else { RayKind::Reflected },
+                nest,
+                weight: LinearRgb::new(r, g, b),
+                open: if nest == 0 { 1.0 } else { 0.0 },
+                media: Media::default(),
+                distance: rays.distance(number),
+                parent: u32::MAX,
+            };
+            // It counts the ray itself.
+            let kind =
+                if nest == 0 { &mut work.counts.rays.primary } else { &mut work.counts.rays.reflected };
+            *kind -= 1;
+            let [r, g, b, alpha] = self.subtree(pending, nest, &places[slot], work);
+            desk.add(slot, LinearRgb::new(r, g, b), alpha);
+        }
+        desk.handed = handed;
+        desk.handed.clear();
+    }
+}
+
+/// Eight rays' origins and directions.
+#[inline(always)]
+fn eight_rays<S: Simd>(simd: S, ray: impl Fn(usize) -> crate::Ray) -> [V<S>; 2] {
+    let rays: [crate::Ray; LANES] = std::array::from_fn(ray);
+    let lanes = |of: fn(&crate::Ray) -> DVec3| V {
+        x: F::from_fn(simd, |lane| of(&rays[lane]).x),
+        y: F::from_fn(simd, |lane| of(&rays[lane]).y),
+        z: F::from_fn(simd, |lane| of(&rays[lane]).z),
+    };
+    [lanes(|ray| ray.origin), lanes(|ray| ray.direction)]
+}
