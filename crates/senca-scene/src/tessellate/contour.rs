@@ -91,7 +91,7 @@ fn contoured<'b>(
     };
     let mut best: Option<(Contour<'b>, f64)> = None;
     loop {
-        let mut contour = Contour::new(body, Grid::around(bounds, along));
+        let mut contour = Contour::new(body, bounds.center(), Grid::around(bounds, along));
         if !contour.run() {
             // Too many faces: the last grid that stayed within the limit is kept, or a coarser one tried.
             match best {
@@ -121,6 +121,8 @@ struct Cell {
 /// One contouring of a body on one grid.
 struct Contour<'b> {
     body: &'b Body,
+    /// Middle of the body's box, around which pictures are laid.
+    center: DVec3,
     grid: Grid,
     inside: HashMap<IVec3, bool>,
     crossing_of: HashMap<(IVec3, usize), u32>,
@@ -132,9 +134,10 @@ struct Contour<'b> {
 }
 
 impl<'b> Contour<'b> {
-    fn new(body: &'b Body, grid: Grid) -> Self {
+    fn new(body: &'b Body, center: DVec3, grid: Grid) -> Self {
         Self {
             body,
+            center,
             grid,
             inside: HashMap::new(),
             crossing_of: HashMap::new(),
@@ -351,9 +354,8 @@ struct Output<'c, 'b> {
     builder: Builder,
     points: HashMap<u32, u32>,
     surfaces: HashMap<Tag, u32>,
-    /// Vertices by point, surface and normal.
-    vertices: HashMap<(u32, u32, [u32; 3]), u32>,
-    center: DVec3,
+    /// Vertices by point, surface, normal and u.
+    vertices: HashMap<(u32, u32, [u32; 3], u64), u32>,
 }
 
 impl<'c, 'b> Output<'c, 'b> {
@@ -365,13 +367,14 @@ impl<'c, 'b> Output<'c, 'b> {
             points: HashMap::new(),
             surfaces: HashMap::new(),
             vertices: HashMap::new(),
-            center: Aabb::of_points(places.iter().copied()).center(),
         }
     }
 
     fn face(&mut self, crossing: &Crossing, points: &[u32]) {
         let surface = self.surface(crossing.tag);
-        let corners: Vec<u32> = points.iter().map(|&p| self.vertex(p, crossing, surface)).collect();
+        let middle = points.iter().map(|&p| self.places[p as usize] - self.contour.center).sum::<DVec3>();
+        let u = texcoord(middle).x;
+        let corners: Vec<u32> = points.iter().map(|&p| self.vertex(p, crossing, surface, u)).collect();
         match corners[..] {
             [a, b, c, d] => self.builder.quad([a, b, c, d], surface),
             _ => {
@@ -392,17 +395,22 @@ impl<'c, 'b> Output<'c, 'b> {
         })
     }
 
-    fn vertex(&mut self, point: u32, crossing: &Crossing, surface: u32) -> u32 {
+    /// The vertex of a face with the middle at `u`: those beyond the picture's seam lie outside of it, and
+    /// the poles under the face.
+    fn vertex(&mut self, point: u32, crossing: &Crossing, surface: u32, u: f64) -> u32 {
         let place = self.places[point as usize];
         let builder = &mut self.builder;
         let stored = *self.points.entry(point).or_insert_with(|| builder.point(place));
         let found = self.contour.normal(crossing.tag, place, crossing.normal);
         let normal = found.unwrap_or(crossing.normal);
         let bits = normal.as_vec3().to_array().map(f32::to_bits);
-        let texcoord = texcoord(place - self.center);
+        let from_center = place - self.contour.center;
+        let mut texcoord = texcoord(from_center);
+        let at_pole = from_center.x.hypot(from_center.z) <= 1e-6 * from_center.y.abs();
+        texcoord.x = if at_pole { u } else { u + (texcoord.x - u) - (texcoord.x - u).round() };
         *self
             .vertices
-            .entry((point, surface, bits))
+            .entry((point, surface, bits, texcoord.x.to_bits()))
             .or_insert_with(|| builder.vertex(stored, normal, texcoord))
     }
 }
@@ -411,7 +419,7 @@ impl<'c, 'b> Output<'c, 'b> {
 fn texcoord(d: DVec3) -> DVec2 {
     use std::f64::consts::{PI, TAU};
     let d = d.normalize_or(DVec3::Y);
-    DVec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
+    DVec2::new(0.5 + d.x.atan2(d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
 }
 
 #[cfg(test)]

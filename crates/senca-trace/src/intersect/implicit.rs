@@ -16,6 +16,7 @@ use senca_scene::ShapeError;
 
 use super::analytic::{Analytic, Chart};
 use super::cuboid::{box_ends, side_frame};
+use super::sphere::globe_chart;
 use crate::{Crossing, Ray, SurfacePoint};
 use interval::IntervalRoots;
 
@@ -156,31 +157,17 @@ impl Implicit {
         (sum.length() > 0.0).then(|| sum.try_normalize()).flatten()
     }
 
-    /// The picture on the side of the box that a normal faces most, as [`super::Cuboid`] shows it.
-    fn chart(&self, point: DVec3, side: u32) -> Chart {
-        let (normal, right) = side_frame(side);
-        let up = normal.cross(right);
-        let half = 0.5 * self.bounds.size();
-        let share = (point - self.bounds.center()) / half;
-        Chart {
-            uv: DVec2::new(0.5 + 0.5 * right.dot(share), 0.5 - 0.5 * up.dot(share)),
-            along_u: 2.0 * right * half,
-            along_v: -2.0 * up * half,
-        }
-    }
-}
-
-/// The side of a box, numbered as in [`super::Cuboid`], that a normal faces most.
-fn facing_side(normal: DVec3) -> u32 {
-    let size = normal.abs();
-    let pick =
-        |component: f64, positive: u32, negative: u32| if component < 0.0 { negative } else { positive };
-    if size.z >= size.x && size.z >= size.y {
-        pick(normal.z, 0, 2)
-    } else if size.x >= size.y {
-        pick(normal.x, 1, 3)
-    } else {
-        pick(normal.y, 4, 5)
+    /// The picture around the middle of the box, as a sphere there shows it.
+    fn chart(&self, point: DVec3, normal: DVec3) -> Chart {
+        let from_center = point - self.bounds.center();
+        let chart = globe_chart(from_center.normalize_or(DVec3::Y), DVec3::splat(from_center.length()));
+        // Along the surface instead of the sphere: what of the direction the surface does not have goes
+        // towards the middle.
+        let on_surface = |along: DVec3| {
+            let slide = along - from_center * (normal.dot(along) / normal.dot(from_center));
+            if slide.is_finite() { slide } else { along }
+        };
+        Chart { along_u: on_surface(chart.along_u), along_v: on_surface(chart.along_v), ..chart }
     }
 }
 
@@ -230,12 +217,11 @@ impl Analytic for Implicit {
 
     fn surface_point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         let near = ray.at(crossing.t).clamp(self.bounds.min, self.bounds.max);
-        if crossing.part != SURFACE {
-            let side = crossing.part - 1;
-            return self.chart(near, side).at(near, side_frame(side).0, 0);
-        }
-        let (point, normal) = self.on_surface(near, ray);
-        self.chart(point, facing_side(normal)).at(point, normal, 0)
+        let (point, normal) = match crossing.part {
+            SURFACE => self.on_surface(near, ray),
+            side => (near, side_frame(side - 1).0),
+        };
+        self.chart(point, normal).at(point, normal, 0)
     }
 
     fn is_closed(&self) -> bool {

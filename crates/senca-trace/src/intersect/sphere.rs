@@ -85,7 +85,7 @@ impl Intersect for Sphere {
 /// The picture once around the unit sphere's place `unit`, stretched by `radii`: u from the back over
 /// the left, v from the pole at +y.
 #[inline]
-fn globe_chart(unit: DVec3, radii: DVec3) -> Chart {
+pub(super) fn globe_chart(unit: DVec3, radii: DVec3) -> Chart {
     let across = unit.x.hypot(unit.z);
     let down = DVec3::new(unit.x * unit.y, -across * across, unit.z * unit.y);
     Chart {
