@@ -32,7 +32,9 @@ pub(crate) fn part_above(corners: &[DVec3], tolerance: f64, height: impl Fn(DVec
             part.push(corners[k]);
         }
         if a * b < 0.0 {
-            part.push(corners[k] + (corners[next] - corners[k]) * (a / (a - b)));
+            // From the higher to the lower end, so that neighbours that share the edge get the same point.
+            let (high, low, share) = if a > 0.0 { (k, next, a / (a - b)) } else { (next, k, b / (b - a)) };
+            part.push(corners[high] + (corners[low] - corners[high]) * share);
         }
     }
     part
