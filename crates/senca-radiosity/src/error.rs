@@ -32,6 +32,14 @@ pub enum RadiosityError {
         /// The limit.
         limit: usize,
     },
+    /// A matrix of form factors would need more memory than is allowed.
+    #[error("a matrix of {patches} x {patches} form factors is too large: {limit} patches are the most")]
+    MatrixTooLarge {
+        /// Patches given.
+        patches: usize,
+        /// The limit.
+        limit: usize,
+    },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

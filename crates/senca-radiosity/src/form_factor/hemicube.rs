@@ -14,8 +14,8 @@ use senca_math::conventions::NO_ID;
 use senca_math::glam::{DMat3, DQuat, DVec3, Vec4};
 use senca_math::newell_normal;
 use senca_raster::{
-    Clear, Compare, Ids, Primitives, Rasterizer, Shading, State, Target, TargetError, TiledRasterizer,
-    TiledSettings,
+    Clear, Compare, DepthBias, Ids, Primitives, Rasterizer, Shading, State, Target, TargetError,
+    TiledRasterizer, TiledSettings,
 };
 
 use super::cells::cells;
@@ -134,8 +134,9 @@ const FACES: [[DVec3; 3]; 5] = [
 
 /// What stands nearer than this is not seen, as a share of the square root of the seeing area.
 const NEAREST: f64 = 1e-6;
-/// Backs are drawn farther away by this share, so that of the two sides of a sheet the front is seen.
-const SHEET: f64 = 1e-5;
+/// Backs are drawn farther away by what depth changes over a cell, so that of the two sides of a sheet the
+/// front is seen.
+const SHEET: DepthBias = DepthBias { constant: 0.0, slope: -1.0 };
 
 /// Each part's half cube is turned on by this against the last, in radians: an edge that is parallel to cells
 /// gains or loses a whole row of them, which then averages out. A right angle by the golden ratio.
@@ -150,9 +151,11 @@ pub struct HemicubeView<'h, R = TiledRasterizer> {
     items: Vec<u32>,
     /// Patches that reach above the plane, in the frame of the one that sees.
     seen: Vec<SeenPatch>,
-    /// Triangles on the face that is drawn, and what is written for them.
-    indices: Vec<u32>,
+    /// Triangles on the face that is drawn: those that show their front, and their patches.
+    fronts: Vec<u32>,
     ids: Vec<u32>,
+    /// Those that show their back.
+    backs: Vec<u32>,
     positions: Vec<Vec4>,
 }
 
@@ -184,8 +187,9 @@ impl<'h, R: Rasterizer> HemicubeView<'h, R> {
             depth: vec![0.0; cells],
             items: vec![NO_ID; cells],
             seen: Vec::new(),
-            indices: Vec::new(),
+            fronts: Vec::new(),
             ids: Vec::new(),
+            backs: Vec::new(),
             positions: Vec::new(),
         }
     }
@@ -260,23 +264,25 @@ impl<'h, R: Rasterizer> HemicubeView<'h, R> {
         let cells = (n * rows) as usize;
         let mut target =
             Target::new(n, rows)?.with_depth(&mut self.depth[..cells])?.with_ids(&mut self.items[..cells])?;
-        let primitives = Primitives {
-            positions: &self.positions,
-            varyings: &[],
-            stride: 0,
-            indices: &self.indices,
-            ids: Ids::Each(&self.ids),
-        };
         let clear = Clear { color: None, depth: Some(0.0), id: Some(NO_ID) };
         let state = State { depth_test: Compare::Greater, clear: Some(clear), ..State::default() };
-        self.rasterizer.draw(&mut target, &primitives, &state, &Shading::None);
+        let (positions, varyings, stride) = (&self.positions[..], &[][..], 0);
+        let fronts =
+            Primitives { positions, varyings, stride, indices: &self.fronts, ids: Ids::Each(&self.ids) };
+        self.rasterizer.draw(&mut target, &fronts, &state, &Shading::None);
+        if !self.backs.is_empty() {
+            let state = State { clear: None, depth_bias: SHEET, ..state };
+            let backs = Primitives { indices: &self.backs, ids: Ids::Same(NO_ID), ..fronts };
+            self.rasterizer.draw(&mut target, &backs, &state, &Shading::None);
+        }
         Ok(())
     }
 
     fn cut_to_pyramid(&mut self, face: usize, &[right, up, ahead]: &[DVec3; 3], nearest: f64) {
         self.positions.clear();
-        self.indices.clear();
+        self.fronts.clear();
         self.ids.clear();
+        self.backs.clear();
         // Of the sides only the upper half is there.
         let lower = if face == 0 { ahead + up } else { up };
         let planes = [ahead + right, ahead - right, ahead - up, lower];
@@ -291,13 +297,17 @@ impl<'h, R: Rasterizer> HemicubeView<'h, R> {
             for corner in &part {
                 let w = ahead.dot(*corner);
                 let y = if face == 0 { up.dot(*corner) } else { 2.0 * up.dot(*corner) - w };
-                let depth = if patch.id == NO_ID { 1.0 - SHEET } else { 1.0 };
-                self.positions.push(Vec4::new(right.dot(*corner) as f32, y as f32, depth as f32, w as f32));
+                self.positions.push(Vec4::new(right.dot(*corner) as f32, y as f32, 1.0, w as f32));
                 least = least.min(w);
             }
             for corner in 2..part.len() as u32 {
-                self.indices.extend([first, first + corner - 1, first + corner]);
-                self.ids.push(patch.id);
+                let triangle = [first, first + corner - 1, first + corner];
+                if patch.id == NO_ID {
+                    self.backs.extend(triangle);
+                } else {
+                    self.fronts.extend(triangle);
+                    self.ids.push(patch.id);
+                }
             }
         }
         let least = least.max(nearest) as f32;
@@ -399,7 +409,7 @@ mod tests {
     fn the_plain_rasterizer_gives_the_same_factors() {
         let (cube, patches) = (text(64), room());
         let mut tiled = HemicubeView::new(&cube);
-        let mut plain = HemicubeView::with_rasterizer(&cube, ScanlineRasterizer::default());
+        let mut plain = HemicubeView::with_rasterizer(&cube, ScanlineRasterizer);
         for from in &patches {
             let row = tiled.factors(from.corners(), 2, &patches);
             assert_eq!(row, plain.factors(from.corners(), 2, &patches));

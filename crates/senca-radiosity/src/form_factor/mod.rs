@@ -13,11 +13,14 @@
 mod cells;
 mod clip;
 pub mod closed_form;
+mod cost;
 mod dilogarithm;
 mod double_area;
 mod edge_pair;
 mod hemicube;
 mod lambert;
+mod matrix;
+mod method;
 mod monte_carlo;
 mod nusselt;
 mod patch_scene;
@@ -29,9 +32,12 @@ mod visibility;
 #[cfg(test)]
 mod tests;
 
+pub use cost::Cost;
 pub use double_area::double_area;
 pub use hemicube::{CellFactor, Hemicube, HemicubeView};
 pub use lambert::point_to_polygon;
+pub use matrix::{FormFactors, RowSums};
+pub use method::{Method, MethodSettings};
 pub use monte_carlo::{MonteCarloRow, MonteCarloSettings, monte_carlo};
 pub use nusselt::{nusselt_area, nusselt_count, nusselt_directions, nusselt_outline};
 pub use patch_scene::{FirstHit, PatchScene};

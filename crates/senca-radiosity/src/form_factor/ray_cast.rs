@@ -35,12 +35,23 @@ pub fn visible_share(
     visibility: &(impl Visibility + ?Sized),
     settings: &RayCastSettings,
 ) -> f64 {
+    visible_share_of_pair(from, to, visibility, settings, [0, 0])
+}
+
+/// The same with ends that are another choice for each `pair` of numbers.
+pub(crate) fn visible_share_of_pair(
+    from: &PatchPolygon,
+    to: &PatchPolygon,
+    visibility: &(impl Visibility + ?Sized),
+    settings: &RayCastSettings,
+    pair: [u32; 2],
+) -> f64 {
     let [(normal_from, area_from), (normal_to, area_to)] = [from.normal_and_area(), to.normal_and_area()];
     let rays = settings.rays.max(1);
     let closest = area_from.min(area_to) / (PI * f64::from(rays));
     let (mut all, mut open) = (0.0, 0.0);
     for ray in 0..rays {
-        let mut sampler = Sampler::new(settings.pattern, settings.seed, 0, 0, ray);
+        let mut sampler = Sampler::new(settings.pattern, settings.seed, pair[0], pair[1], ray);
         let [u, v] = sampler.next_2d();
         let [s, t] = sampler.next_2d();
         let (a, b) = (even_place(from.corners(), u, v), even_place(to.corners(), s, t));

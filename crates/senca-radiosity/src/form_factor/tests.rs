@@ -144,3 +144,34 @@ proptest! {
         prop_assert!((here - there).abs() < 1e-9 / area(&a).max(1e-3), "{} {}", here, there);
     }
 }
+
+#[test]
+fn a_cosine_emitter_radiates_pi_times_its_normal_intensity() {
+    // B cos(phi) over the hemisphere: the ring at phi has the solid angle 2 pi sin(phi) dphi.
+    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+    let ring = |phi: f64| phi.cos() * TAU * phi.sin();
+    let total = super::quadrature::adaptive(&ring, 0.0, FRAC_PI_2, 1e-14);
+    assert!((total - PI).abs() < 1e-13, "{total}");
+}
+
+#[test]
+fn the_factor_of_a_divided_emitter_is_the_mean_over_its_parts() {
+    let (wall, floor) = (wall(), square_at(0.0));
+    let part = |u: f64, v: f64, s: f64, t: f64| {
+        [[u, v], [u + s, v], [u + s, v + t], [u, v + t]].map(|[x, y]| DVec3::new(x, y, 0.0))
+    };
+    let parts = [part(0.0, 0.0, 0.25, 1.0), part(0.25, 0.0, 0.75, 0.5), part(0.25, 0.5, 0.75, 0.5)];
+    let mean: f64 = parts.iter().map(|p| area(p) * polygon_to_polygon(p, &wall)).sum();
+    assert!((mean - polygon_to_polygon(&floor, &wall)).abs() < 1e-13);
+}
+
+#[test]
+fn edges_that_are_parallel_but_for_rounding_lose_nothing() {
+    // Faces of a turned box: edges along their common line differ by rounding only.
+    for k in 0..50 {
+        let turn = DQuat::from_scaled_axis(DVec3::new(1.0, 2.0, 3.0) * f64::from(k) * 0.37);
+        let moved = |c: [DVec3; 4]| c.map(|p| turn * p + DVec3::new(10.0, -20.0, 30.0));
+        let factor = polygon_to_polygon(&moved(square_at(0.0)), &moved(wall()));
+        assert!((factor - PERPENDICULAR_UNIT).abs() < 1e-12, "{factor}");
+    }
+}
