@@ -9,6 +9,7 @@
 mod direct;
 mod error;
 pub mod form_factor;
+mod hierarchy;
 mod mesh;
 mod nodes;
 mod occluders;
@@ -18,6 +19,7 @@ pub mod system;
 
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
+pub use hierarchy::{HierarchyLamps, HierarchySettings, LampLight, solve_hierarchy};
 pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
 pub use nodes::{Extrapolation, NodeTransfer, NodeValues};
 pub use occluders::{Occluders, PolygonHit};

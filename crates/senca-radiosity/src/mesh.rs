@@ -20,6 +20,7 @@ use senca_math::{Aabb, LinearRgb};
 use crate::PatchPolygon;
 
 pub use build::{MeshSettings, Sides};
+pub(crate) use divide::MAX_LEVEL;
 
 /// Stands for "none" among indices.
 pub const NONE: u32 = u32::MAX;

@@ -12,7 +12,7 @@ const LONG_QUAD: f64 = 1.5;
 const LONG_TRIANGLE: f64 = 4.0;
 
 /// Divisions of one polygon at most; beyond it the middle of an edge soon is one of its ends.
-pub(super) const MAX_LEVEL: u8 = 24;
+pub(crate) const MAX_LEVEL: u8 = 24;
 
 impl ElementMesh {
     /// Divides a leaf at the middle of its edges, in 4 parts, or in 2 where it is long and narrow. The

@@ -1,0 +1,390 @@
+//! The rounds of a solution.
+
+use rayon::prelude::*;
+use senca_math::glam::Vec4;
+use senca_math::{Control, LinearRgb};
+
+use super::cluster::Clusters;
+use super::exchange::{Network, Parts};
+use super::facet::Facet;
+use super::link::Link;
+use super::lost::estimate_lost;
+use super::node::{MAX_NODES, Node};
+use super::oracle::{Oracle, Verdict};
+use super::refine::{Limits, apply, judge_all};
+use super::settings::{HierarchyLamps, HierarchySettings};
+use super::sight::Sight;
+use super::state::{State, brightness, rgb, rgb1};
+use crate::{ElementMesh, Occluders, RadiosityError, Solution, SolveReport};
+
+/// Smallest edge of elements, as a share of the diagonal of the scene.
+const SMALLEST_EDGE: f64 = 1.0 / 400.0;
+
+/// Most that a sum of form factors is corrected by.
+const MOST_CORRECTION: f32 = 2.0;
+
+/// Links that are judged between two looks at whether the caller wants to stop.
+const AT_ONCE: usize = 1 << 14;
+
+/// Exchange of light over `mesh`, whose polygons are left whole or divided by the caller as a start.
+///
+/// `on_round` sees the solution after each round of refinement, for early pictures. The result does
+/// not depend on the number of threads. When the caller cancels, the best solution so far is returned;
+/// it has not converged then.
+///
+/// # Errors
+/// [`RadiosityError::Setting`] for settings out of range, or emission that is not finite;
+/// [`RadiosityError::TooManyElements`].
+pub fn solve_hierarchy(
+    mesh: ElementMesh,
+    lamps: &HierarchyLamps<'_>,
+    settings: &HierarchySettings,
+    control: &Control<'_>,
+    on_round: &mut dyn FnMut(&Solution),
+) -> Result<Solution, RadiosityError> {
+    settings.check()?;
+    let mut solver = Solver::new(mesh, lamps, settings, control)?;
+    solver.light_by_lamps();
+    for round in 0..settings.rounds {
+        if solver.power <= 0.0 || !solver.run_round(round) {
+            break;
+        }
+        if round + 1 < settings.rounds {
+            solver.show(on_round);
+        }
+        control.report((round + 1) as f32 / settings.rounds as f32);
+    }
+    solver.show(on_round);
+    Ok(solver.finish())
+}
+
+struct Solver<'a> {
+    mesh: ElementMesh,
+    clusters: Clusters,
+    occluders: Occluders,
+    lamps: &'a HierarchyLamps<'a>,
+    facets: Vec<Facet>,
+    settings: &'a HierarchySettings,
+    control: &'a Control<'a>,
+    state: State,
+    /// Of each element, light of the lamps without extent; NaN where it is not known.
+    point_lit: Vec<Vec4>,
+    links: Vec<Link>,
+    network: Network,
+    /// Emitted and cast, largest channel.
+    power: f64,
+    smallest_area: f64,
+    report: SolveReport,
+}
+
+impl<'a> Solver<'a> {
+    fn new(
+        mesh: ElementMesh,
+        lamps: &'a HierarchyLamps<'a>,
+        settings: &'a HierarchySettings,
+        control: &'a Control<'a>,
+    ) -> Result<Self, RadiosityError> {
+        if mesh.elements().len() >= MAX_NODES.min(settings.max_elements) {
+            return Err(RadiosityError::TooManyElements { limit: MAX_NODES.min(settings.max_elements) });
+        }
+        let occluders = Occluders::new(&mesh)?;
+        let clusters = Clusters::new(&mesh);
+        let mut state = State::new(&mesh, &clusters);
+        state.lamp_radiance = lamps.rectangles.iter().map(|&(_, shows)| rgb1(shows, 0.0)).collect();
+        let facets: Vec<Facet> =
+            lamps.rectangles.iter().map(|&(shape, _)| Facet::of_polygon(shape)).collect();
+        let edge = settings.smallest_edge.unwrap_or(SMALLEST_EDGE * mesh.bounds().diagonal());
+        let mut links = Vec::new();
+        if clusters.len() > 0 {
+            links.push(Link::new(Node::cluster(0), Node::cluster(0)));
+            let from_lamps =
+                (0..facets.len() as u32).map(|lamp| Link::new(Node::cluster(0), Node::lamp(lamp)));
+            links.extend(from_lamps);
+        }
+        let mut solver = Self {
+            smallest_area: edge * edge,
+            power: 0.0,
+            point_lit: Vec::new(),
+            network: Network::default(),
+            report: SolveReport::default(),
+            mesh,
+            clusters,
+            occluders,
+            lamps,
+            facets,
+            settings,
+            control,
+            state,
+            links,
+        };
+        solver.power = solver.given_power();
+        if !solver.power.is_finite() {
+            return Err(RadiosityError::Setting {
+                name: "emitted power",
+                value: solver.power,
+                expected: "finite",
+            });
+        }
+        Ok(solver)
+    }
+
+    /// What emitters and rectangles send; the largest channel.
+    fn given_power(&self) -> f64 {
+        let moments = self.state.moments.first().map_or(Vec4::ZERO, |moments| moments.power);
+        let lamps = self.facets.iter().zip(&self.state.lamp_radiance);
+        let all = lamps.fold(moments, |sum, (facet, &radiance)| sum + radiance * facet.area as f32);
+        // Unlike the largest, the sum shows what is not a number.
+        f64::from(if (all.x + all.y + all.z).is_finite() { brightness(all) } else { f32::NAN })
+    }
+
+    fn parts(&self) -> Parts<'_> {
+        Parts { mesh: &self.mesh, clusters: &self.clusters, lamps: &self.facets }
+    }
+
+    /// Light of the lamps without extent, with elements divided where it changes.
+    fn light_by_lamps(&mut self) {
+        let mut first = 0;
+        let mut threshold = f64::INFINITY;
+        while self.lamps.others.is_some() && first < self.mesh.elements().len() {
+            if self.control.is_cancelled() {
+                break;
+            }
+            let lit = self.lit_by_lamps(first);
+            if first == 0 {
+                let area = |element: usize| self.mesh.elements()[element].area as f32;
+                let roots = 0..self.mesh.polygons().len();
+                let cast: Vec4 = roots.map(|root| lit[root].0 * area(root)).sum();
+                self.power += f64::from(brightness(cast));
+                threshold = self.settings.threshold * self.power / self.settings.direct_detail;
+            }
+            self.point_lit.extend(lit.iter().map(|&(mean, _)| mean));
+            let end = self.mesh.elements().len();
+            for (number, &(_, spread)) in (first..end).zip(&lit) {
+                let element = &self.mesh.elements()[number];
+                let wrong = f64::from(spread) * element.area > threshold && element.is_leaf();
+                if wrong && element.area > self.smallest_area && end < self.settings.max_elements {
+                    self.mesh.divide(number as u32);
+                }
+            }
+            first = end;
+        }
+        self.state.follow_mesh(&self.mesh);
+    }
+
+    /// Light of the lamps without extent on elements from `first` on, and how much it varies.
+    fn lit_by_lamps(&self, first: usize) -> Vec<(Vec4, f32)> {
+        let Some(light) = self.lamps.others else {
+            return vec![(Vec4::ZERO, 0.0); self.mesh.elements().len() - first];
+        };
+        let on = |element: usize| {
+            let facet = Facet::of(&self.mesh, element as u32);
+            let at = facet.places().into_iter().map(|place| rgb1(light(place, facet.normal), 0.0));
+            let (mut sum, mut least, mut most, mut count) = (Vec4::ZERO, Vec4::INFINITY, Vec4::ZERO, 0.0);
+            for value in at {
+                (sum, least, most, count) = (sum + value, least.min(value), most.max(value), count + 1.0);
+            }
+            (sum / count, brightness(most - least))
+        };
+        (first..self.mesh.elements().len()).into_par_iter().with_min_len(16).map(on).collect()
+    }
+
+    /// Refines and exchanges. False when the caller wants to stop before there is anything new.
+    fn run_round(&mut self, round: u32) -> bool {
+        let finer = 2f64.powi((self.settings.rounds - 1 - round) as i32);
+        let last = round + 1 == self.settings.rounds;
+        if !self.refine(self.settings.threshold * self.power * finer) {
+            return false;
+        }
+        self.light_new_leaves();
+        estimate_lost(&mut self.state, &self.mesh, &self.occluders);
+        let is_lamp = |source: Node| source.as_lamp().is_some();
+        let lamps = Network::new(&self.links, &self.parts(), is_lamp);
+        self.network = Network::new(&self.links, &self.parts(), |source| !is_lamp(source));
+        let mut light = lamps.gather(&self.parts(), &self.state);
+        for (light, &lit) in light.iter_mut().zip(&self.point_lit) {
+            *light += lit;
+        }
+        self.state.lamp_light = light;
+        self.state.pull(&self.mesh);
+        self.report.links = (self.network.len() + lamps.len()) as u64;
+        self.exchange(self.settings.tolerance * if last { 1.0 } else { 8.0 });
+        true
+    }
+
+    /// Judges links until all are good enough. False when the caller wants to stop.
+    fn refine(&mut self, threshold: f64) -> bool {
+        let limits =
+            Limits { elements: self.settings.max_elements.min(MAX_NODES), links: self.settings.max_links };
+        let mut links = std::mem::take(&mut self.links);
+        let mut kept = Vec::new();
+        while !links.is_empty() {
+            let mut next = Vec::new();
+            for chunk in links.chunks_mut(AT_ONCE) {
+                if self.control.is_cancelled() {
+                    return false;
+                }
+                let verdicts = judge_all(&self.oracle(threshold), chunk);
+                let judged: Vec<(Link, Verdict)> = chunk.iter().copied().zip(verdicts).collect();
+                let (more, _) = apply(&mut self.mesh, &self.clusters, &judged, &mut kept, &limits);
+                next.extend(more);
+                self.state.follow_mesh(&self.mesh);
+            }
+            links = next;
+        }
+        self.links = kept;
+        true
+    }
+
+    fn oracle(&self, threshold: f64) -> Oracle<'_> {
+        Oracle {
+            sight: Sight {
+                mesh: &self.mesh,
+                clusters: &self.clusters,
+                occluders: &self.occluders,
+                lamps: &self.facets,
+            },
+            state: &self.state,
+            threshold,
+            direct_threshold: threshold / self.settings.direct_detail,
+            smallest_area: self.smallest_area,
+        }
+    }
+
+    fn light_new_leaves(&mut self) {
+        let lit = self.lit_by_lamps(self.point_lit.len());
+        self.point_lit.extend(lit.into_iter().map(|(mean, _)| mean));
+    }
+
+    /// Light goes to and fro until little changes.
+    fn exchange(&mut self, tolerance: f64) {
+        self.report.converged = false;
+        for _ in 0..self.settings.max_iterations {
+            if self.control.is_cancelled() {
+                return;
+            }
+            let before = self.state.radiosity.clone();
+            let incident = self.arriving();
+            let scale = self.balance(&incident);
+            self.state.incident = incident.into_iter().map(|light| light * scale).collect();
+            self.state.pull(&self.mesh);
+            self.report.iterations += 1;
+            self.report.residual = change(&before, &self.state.radiosity);
+            if !self.report.residual.is_finite() {
+                self.state.radiosity = before;
+                return;
+            }
+            if self.report.residual <= tolerance {
+                self.report.converged = true;
+                return;
+            }
+        }
+    }
+
+    /// Light from surfaces at all leaves. Where nothing is lost on the way out, all directions are
+    /// accounted for: there the sum of the form factors is brought to one.
+    fn arriving(&mut self) -> Vec<Vec4> {
+        self.state.gather_moments(&self.mesh, &self.clusters);
+        let mut incident = self.network.gather(&self.parts(), &self.state);
+        for (light, &lost) in incident.iter_mut().zip(&self.state.lost) {
+            let correction = light.w.recip();
+            if lost == 0.0 && correction < MOST_CORRECTION && correction > MOST_CORRECTION.recip() {
+                *light *= correction;
+            }
+        }
+        incident
+    }
+
+    /// Per channel, what is sent and not lost over what arrives.
+    fn balance(&self, incident: &[Vec4]) -> Vec4 {
+        let (mut sent, mut arrives) = ([0.0f64; 3], [0.0f64; 3]);
+        for (number, element) in self.mesh.elements().iter().enumerate().filter(|(_, e)| e.is_leaf()) {
+            let kept = element.area * f64::from(1.0 - self.state.lost[number]);
+            for channel in 0..3 {
+                sent[channel] += kept * f64::from(self.state.radiosity[number][channel]);
+                arrives[channel] += element.area * f64::from(incident[number][channel]);
+            }
+        }
+        let most = f64::from(MOST_CORRECTION);
+        let ratio = |channel: usize| {
+            let ratio = sent[channel] / arrives[channel];
+            if ratio.is_finite() { ratio.clamp(1.0 / most, most) as f32 } else { 1.0 }
+        };
+        Vec4::new(ratio(0), ratio(1), ratio(2), 1.0)
+    }
+
+    /// Shows the solution to the caller.
+    fn show(&mut self, on_round: &mut dyn FnMut(&Solution)) {
+        let solution = self.solution();
+        on_round(&solution);
+        self.mesh = solution.mesh;
+    }
+
+    /// The light so far; takes the mesh.
+    fn solution(&mut self) -> Solution {
+        self.state.follow_mesh(&self.mesh);
+        let direct = self.direct();
+        let incident = self.state.incident.iter().zip(&self.state.lamp_light);
+        let incident: Vec<LinearRgb> = incident.map(|(&light, &lamps)| rgb(light + lamps)).collect();
+        let report = SolveReport {
+            polygons: self.mesh.polygons().len() as u64,
+            patches: self.mesh.leaves().count() as u64,
+            elements: self.mesh.elements().len() as u64,
+            energy_error: self.energy_error(),
+            converged: self.report.converged || self.power <= 0.0,
+            ..self.report
+        };
+        let mut solution = Solution { mesh: std::mem::take(&mut self.mesh), incident, direct, report };
+        solution.pull();
+        solution
+    }
+
+    /// Light that comes straight from emitters and lamps.
+    fn direct(&mut self) -> Vec<LinearRgb> {
+        if self.network.len() == 0 {
+            return self.state.lamp_light.iter().map(|&light| rgb(light)).collect();
+        }
+        let lit = std::mem::take(&mut self.state.radiosity);
+        let emission = |number: u32| rgb1(self.mesh.surface(number).emission, 1.0);
+        self.state.radiosity = (0..self.mesh.elements().len() as u32).map(emission).collect();
+        let direct = self.arriving();
+        self.state.radiosity = lit;
+        let lamps = self.state.lamp_light.iter();
+        direct.iter().zip(lamps).map(|(&light, &lamps)| rgb(light + lamps)).collect()
+    }
+
+    /// Power that is neither absorbed nor lost, as a share of what is given.
+    fn energy_error(&self) -> f64 {
+        let (mut given, mut gone) = ([0.0f64; 3], [0.0f64; 3]);
+        for (number, element) in self.mesh.elements().iter().enumerate().filter(|(_, e)| e.is_leaf()) {
+            let surface = self.mesh.surface(number as u32);
+            let [emission, reflectance] = [surface.emission, surface.reflectance].map(|c| c.to_array());
+            let lost = f64::from(self.state.lost[number]);
+            for channel in 0..3 {
+                let lamps = f64::from(self.state.lamp_light[number][channel]);
+                let incident = f64::from(self.state.incident[number][channel]) + lamps;
+                let sent = f64::from(self.state.radiosity[number][channel]);
+                given[channel] += element.area * (f64::from(emission[channel]) + lamps);
+                gone[channel] +=
+                    element.area * ((1.0 - f64::from(reflectance[channel])) * incident + lost * sent);
+            }
+        }
+        let error = |(given, gone): (f64, f64)| if given > 0.0 { (gone / given - 1.0).abs() } else { 0.0 };
+        given.into_iter().zip(gone).map(error).fold(0.0, f64::max)
+    }
+
+    fn finish(mut self) -> Solution {
+        self.solution()
+    }
+}
+
+/// The largest change of a channel as a share of the largest value.
+fn change(before: &[Vec4], after: &[Vec4]) -> f64 {
+    let (mut most, mut largest) = (0.0f32, f32::MIN_POSITIVE);
+    for (&old, &new) in before.iter().zip(after) {
+        let step = brightness((new - old).abs());
+        // Written so that what is not a number is the largest of all.
+        most = if step <= most { most } else { step };
+        largest = largest.max(brightness(new));
+    }
+    f64::from(most) / f64::from(largest)
+}
