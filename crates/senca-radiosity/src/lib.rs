@@ -14,6 +14,7 @@ mod mesh;
 mod nodes;
 mod occluders;
 mod patch_polygon;
+mod saved;
 mod solution;
 pub mod system;
 
@@ -24,4 +25,5 @@ pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface
 pub use nodes::{Extrapolation, NodeTransfer, NodeValues};
 pub use occluders::{Occluders, PolygonHit};
 pub use patch_polygon::PatchPolygon;
+pub use saved::{SavedSolutionError, light_fingerprint};
 pub use solution::{Solution, SolveReport};

@@ -9,6 +9,7 @@
 
 mod build;
 mod divide;
+mod restore;
 #[cfg(test)]
 mod tests;
 
@@ -21,6 +22,7 @@ use crate::PatchPolygon;
 
 pub use build::{MeshSettings, Sides};
 pub(crate) use divide::MAX_LEVEL;
+pub(crate) use restore::MeshSeed;
 
 /// Stands for "none" among indices.
 pub const NONE: u32 = u32::MAX;

@@ -100,7 +100,7 @@ impl ElementMesh {
     }
 
     /// Adds a triangle or quadrilateral as a root, unless it has no area. Only before any division.
-    fn push_polygon(&mut self, vertices: &[u32], surface: u32) {
+    pub(super) fn push_polygon(&mut self, vertices: &[u32], surface: u32) {
         let corners: SmallVec<[DVec3; 4]> = vertices.iter().map(|&v| self.positions[v as usize]).collect();
         let normal = senca_math::newell_normal(&corners);
         if !(normal.length() > 0.0 && normal.is_finite()) {
