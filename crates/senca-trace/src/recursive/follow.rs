@@ -291,8 +291,8 @@ impl Tracer<'_> {
     fn local<R: Recorder>(&self, seen: &Seen, tree: &mut Tree<'_, R>) -> LinearRgb {
         let Seen { at, material, .. } = seen;
         let reflector = Reflector::new(material, at.to_viewer.as_vec3(), self.settings.light_model);
-        let mut sum = material.emission + reflector.ambient(self.ambient, material.occlusion);
-        if !reflector.is_lit() {
+        let (mut sum, is_lit) = self.unlit_part(at, material, &reflector);
+        if !is_lit {
             return sum;
         }
         let position = at.point.as_vec3();

@@ -37,6 +37,7 @@ mod reflector;
 mod settings;
 mod shadow;
 mod stream;
+mod surface_light;
 #[cfg(test)]
 mod tests;
 
@@ -44,15 +45,20 @@ use senca_math::glam::DVec3;
 use senca_math::{Aabb, LinearRgb, View, ViewKind};
 use senca_scene::{AlphaMode, Background, Fog, Lens};
 
-use crate::{Counters, Crossings, MaterialTable, PrimaryRays, Ray, SamplePlace, World};
+use crate::{
+    Counters, Crossings, Interaction, MaterialPoint, MaterialTable, PrimaryRays, Ray, SamplePlace, World,
+};
 use background::Sky;
 use lamps::{TracedLight, lights_of};
 use media::{Media, Medium};
+use reflector::Reflector;
 use stream::Stream;
 
 pub(crate) use follow::Pending;
 pub use follow::{MAX_RAYS_PER_SAMPLE, RayKind, Work};
 pub use settings::{Backs, LightModel, RecursiveSettings};
+use surface_light::Known;
+pub use surface_light::{KnownLight, SurfaceLight};
 
 /// A scene with all that is needed to follow rays into it. Shared by all threads.
 #[derive(Debug)]
@@ -73,6 +79,7 @@ pub struct Tracer<'w> {
     blockers: Blockers,
     /// The fast way, where the scene can go it.
     stream: Option<Stream>,
+    known: Known<'w>,
 }
 
 /// What kinds of surfaces shadow rays have to tell apart.
@@ -112,6 +119,7 @@ impl<'w> Tracer<'w> {
             bodies: bodies_of(world, &materials),
             media_at_eye: Media::default(),
             blockers: blockers_of(world, &materials, settings),
+            known: Known::default(),
             materials,
             stream: None,
         };
@@ -134,6 +142,15 @@ impl<'w> Tracer<'w> {
     #[must_use]
     pub fn with_lens(mut self, lens: Option<Lens>) -> Self {
         self.rays = self.rays.with_lens(&self.view, lens);
+        self
+    }
+
+    /// The same with light on surfaces that was found beforehand, in place of the ambient light.
+    /// Source: course text, task 4.9.
+    #[must_use]
+    pub fn with_surface_light(mut self, light: &'w dyn SurfaceLight) -> Self {
+        self.known = Known(Some(light));
+        self.stream = None;
         self
     }
 
@@ -219,6 +236,22 @@ fn blockers_of(world: &World<'_>, materials: &MaterialTable<'_>, settings: &Recu
 }
 
 impl Tracer<'_> {
+    /// Light that a place sends to the viewer without any lamp, and whether lamps are to be looked at.
+    /// Source: course text, section 3.1, the first term of equation 3.2, and task 4.9.
+    fn unlit_part(
+        &self,
+        at: &Interaction,
+        material: &MaterialPoint,
+        reflector: &Reflector,
+    ) -> (LinearRgb, bool) {
+        let own = match self.known.0.map(|light| light.at(at, material)) {
+            None => reflector.ambient(self.ambient, material.occlusion),
+            Some(KnownLight::Arriving(light)) => reflector.of_known(light),
+            Some(KnownLight::Leaving(light)) => return (light, false),
+        };
+        (material.emission + own, reflector.is_lit())
+    }
+
     /// Share of light left after a way through what a ray is in.
     fn absorbed(&self, media: &Media, length: f64) -> LinearRgb {
         let Some(medium) = media.current() else { return LinearRgb::WHITE };

@@ -72,7 +72,10 @@ impl Tracer<'_> {
     fn local_light(&self, seen: &Seen, counts: &mut TraceCounts) -> LinearRgb {
         let Seen { at, material, .. } = seen;
         let reflector = Reflector::new(material, at.to_viewer.as_vec3(), self.settings.light_model);
-        let mut sum = material.emission + reflector.ambient(self.ambient, material.occlusion);
+        let (mut sum, is_lit) = self.unlit_part(at, material, &reflector);
+        if !is_lit {
+            return sum;
+        }
         let sampler = Sampler::new(Pattern::Sobol, 0, 0, 0, 0);
         for light in &self.lights {
             let (light, to_light) = light.place(0, 0, sampler, at.point);

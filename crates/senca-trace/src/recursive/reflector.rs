@@ -66,6 +66,16 @@ impl Reflector {
         }
     }
 
+    /// The part that is reflected of light that comes from everywhere and is known well: what hides it
+    /// is accounted for.
+    #[inline]
+    pub(crate) fn of_known(&self, arriving: LinearRgb) -> LinearRgb {
+        match &self.model {
+            Model::Phong(constants) => arriving * constants.diffuse,
+            Model::Unlit(_) | Model::MetallicRoughness(_) => self.ambient(arriving, 1.0),
+        }
+    }
+
     /// Whether lamps make a difference.
     #[inline]
     pub(crate) fn is_lit(&self) -> bool {

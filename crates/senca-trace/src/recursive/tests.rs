@@ -490,3 +490,41 @@ fn lights_have_names_and_normals_face_the_ray() {
         assert_eq!(seen.material.normal, Vec3::Y);
     });
 }
+
+/// Knows one answer.
+struct Everywhere(KnownLight);
+
+impl SurfaceLight for Everywhere {
+    fn at(&self, _: &crate::Interaction, _: &crate::MaterialPoint) -> KnownLight {
+        self.0
+    }
+}
+
+#[test]
+fn light_that_is_known_takes_the_place_of_the_ambient_light() {
+    let mut scene = lit_floor(LightKind::Point);
+    scene.ambient = LinearRgb::splat(100.0);
+    let world = World::new(&scene).expect("a world");
+    let size = [16, 16];
+    let seen = |light: Option<KnownLight>, max_depth| {
+        let known = light.map(Everywhere);
+        let eye = view(DVec3::new(0.0, 3.0, 0.01), DVec3::ZERO);
+        let mut tracer = Tracer::new(&world, &eye, size, Background::None, &fixed_depth(max_depth));
+        if let Some(known) = &known {
+            tracer = tracer.with_surface_light(known);
+        }
+        let ray = Ray::new(DVec3::new(0.1, 0.5, 0.1), DVec3::NEG_Y);
+        let fast = LinearRgb::from_array(
+            *tracer.light_along(ray, &mut Work::default()).first_chunk::<3>().expect("three of four"),
+        );
+        let plain = tracer.ray_trac(ray.origin, ray.direction, 0, &mut TraceCounts::default());
+        assert!((fast.r - plain.r).abs() < 1e-5, "{fast:?} and {plain:?}");
+        fast.r
+    };
+    let diffuse = 0.4;
+    let arriving = |light| seen(Some(KnownLight::Arriving(LinearRgb::splat(light))), 0);
+    let lamp = arriving(0.0);
+    assert!(lamp > 0.0 && (seen(None, 0) - lamp - diffuse * 100.0).abs() < 1e-4);
+    assert!((arriving(0.5) - lamp - diffuse * 0.5).abs() < 1e-5);
+    assert_eq!(seen(Some(KnownLight::Leaving(LinearRgb::splat(0.3))), 0), 0.3);
+}
