@@ -2,6 +2,7 @@
 
 use senca_scene::Mesh;
 use senca_scene::math::glam::{DVec3, Vec3};
+use senca_scene::math::newell_normal_of;
 
 /// The direction of `v`, even where its length squared overflows or vanishes in `f32`.
 pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
@@ -21,7 +22,7 @@ pub(crate) fn fill_missing_normals(mesh: &mut Mesh) {
     }
     let mut sums = vec![DVec3::ZERO; mesh.vertices.normal.len()];
     for face in mesh.faces.iter() {
-        let area = newell(mesh, face);
+        let area = newell_normal_of(face.iter().map(|&v| mesh.position(v).as_dvec3()));
         face.iter().for_each(|&vertex| sums[vertex as usize] += area);
     }
     for (normal, sum) in mesh.vertices.normal.iter_mut().zip(sums) {
@@ -29,14 +30,4 @@ pub(crate) fn fill_missing_normals(mesh: &mut Mesh) {
             *normal = sum.try_normalize().map_or(Vec3::Z, |n| n.as_vec3());
         }
     }
-}
-
-/// Normal of a polygon, twice its area long (Newell's method: Sutherland, Sproull and Schumacker
-/// 1974, appendix).
-fn newell(mesh: &Mesh, face: &[u32]) -> DVec3 {
-    let origin = mesh.position(face[0]).as_dvec3();
-    let edges = face.windows(2).skip(1);
-    edges
-        .map(|w| (mesh.position(w[0]).as_dvec3() - origin).cross(mesh.position(w[1]).as_dvec3() - origin))
-        .sum()
 }

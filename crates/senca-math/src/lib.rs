@@ -72,7 +72,9 @@ pub use interval::Interval;
 pub use line::Line2;
 pub use nurbs::{BezierPiece, KnotVector, NurbsCurve, NurbsError, NurbsSurface, RationalPatch};
 pub use plane::{CANONICAL_VOLUME, CLIP_VOLUME, Plane};
-pub use polygon::{newell_normal, triangulate, triangulate_in_space, triangulate_with_holes};
+pub use polygon::{
+    newell_normal, newell_normal_of, triangulate, triangulate_in_space, triangulate_with_holes,
+};
 pub use projective::{HomogeneousPoint, is_collineation, normalized, same_map};
 pub use ray::Ray;
 pub use roots::{

@@ -17,11 +17,20 @@ pub use ear_clip::{triangulate, triangulate_with_holes};
 /// line or turn inwards.
 #[must_use]
 pub fn newell_normal(corners: &[DVec3]) -> DVec3 {
-    let Some(&origin) = corners.first() else { return DVec3::ZERO };
+    newell_normal_of(corners.iter().copied())
+}
+
+/// [`newell_normal`] of corners that come one by one.
+#[must_use]
+pub fn newell_normal_of(corners: impl IntoIterator<Item = DVec3>) -> DVec3 {
+    let mut corners = corners.into_iter();
+    let Some(origin) = corners.next() else { return DVec3::ZERO };
     // Taken from a corner, so that a polygon far from the origin loses no digits.
-    let mut doubled = DVec3::ZERO;
-    for pair in corners.windows(2) {
-        doubled += (pair[0] - origin).cross(pair[1] - origin);
+    let (mut doubled, mut before) = (DVec3::ZERO, DVec3::ZERO);
+    for corner in corners {
+        let arm = corner - origin;
+        doubled += before.cross(arm);
+        before = arm;
     }
     0.5 * doubled
 }

@@ -1,7 +1,9 @@
 //! Why a picture could not be drawn.
 
-use senca_math::{Cancelled, Image};
+use senca_math::Cancelled;
 use senca_scene::ShapeError;
+
+use crate::settings::Crop;
 
 /// Why [`crate::render`] gave no picture. Variants come in the order input, parameter, limit, caller.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -109,13 +111,18 @@ impl From<Cancelled> for RenderError {
 
 impl RenderError {
     /// `Ok` when a picture of this size can be drawn.
-    pub(crate) fn check_size(image: &Image) -> Result<(), Self> {
-        let (width, height) = (image.width(), image.height());
+    pub(crate) fn check_size([width, height]: [u32; 2]) -> Result<(), Self> {
         let most = senca_raster::MAX_TARGET_SIDE - 4;
         match () {
             () if width == 0 || height == 0 => Err(Self::EmptyImage { width, height }),
             () if width.max(height) > most => Err(Self::ImageTooLarge { width, height, most }),
             () => Ok(()),
         }
+    }
+
+    /// That an area is too large for a rasterizer.
+    pub(crate) fn area_too_large(area: &Crop) -> Self {
+        let most = senca_raster::MAX_TARGET_SIDE;
+        Self::ImageTooLarge { width: area.width, height: area.height, most }
     }
 }

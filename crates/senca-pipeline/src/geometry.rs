@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use senca_math::glam::{DMat4, Mat3, Mat4};
+use senca_math::glam::{DMat3, DMat4, Mat3, Mat4};
 use senca_math::{View, ViewKind};
 use senca_scene::{
     Geometry, Instance, Mesh, PixelTolerance, Scene, Shape, TessellationSettings, Tolerance, tessellate,
@@ -152,11 +152,10 @@ impl<'s> World<'s> {
 /// Inverse transpose of the linear part, up to a positive factor: of cofactors, so that it exists for
 /// flattened objects too, with the sign of the determinant.
 pub(crate) fn normal_matrix(m: &DMat4) -> Mat3 {
-    let (x, y, z) = (m.x_axis.truncate(), m.y_axis.truncate(), m.z_axis.truncate());
-    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let columns = [y.cross(z), z.cross(x), x.cross(y)];
+    let exact = senca_math::normal_matrix(DMat3::from_mat4(*m));
+    let columns = [exact.x_axis, exact.y_axis, exact.z_axis];
     let largest = columns.iter().map(|c| c.length()).fold(f64::MIN_POSITIVE, f64::max);
-    let [x, y, z] = columns.map(|c| (c * (sign / largest)).as_vec3());
+    let [x, y, z] = columns.map(|c| (c / largest).as_vec3());
     Mat3::from_cols(x, y, z)
 }
 

@@ -33,6 +33,7 @@
 //! # }
 //! ```
 
+mod canvas;
 mod error;
 mod geometry;
 mod gouraud;
@@ -55,7 +56,7 @@ mod visibility;
 
 pub use error::RenderError;
 pub use lines::{Segment, SegmentKind, hidden_line_segments, wire_segments};
-pub use render::{render, render_with};
+pub use render::{render, render_part, render_with};
 pub use report::{Report, StageSeconds};
 pub use senca_math::Control;
 pub use settings::{

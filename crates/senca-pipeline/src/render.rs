@@ -21,6 +21,7 @@ use senca_raster::{Counters, Rasterizer, ScanlineRasterizer, Shading as RasterSh
 use senca_scene::{Background, Environment, Scene};
 use senca_shading::LightRig;
 
+use crate::canvas::Canvas;
 use crate::geometry::World;
 use crate::gouraud::light_vertices;
 use crate::material::resolve_materials;
@@ -70,16 +71,52 @@ pub fn render_with(
     image: &mut Image,
     control: &Control<'_>,
 ) -> Result<Report, RenderError> {
-    RenderError::check_size(image)?;
+    let area = area_of(settings, [image.width(), image.height()])?;
+    draw(scene, view, settings, Canvas::whole(image), &area, control)
+}
+
+/// Draws the part that `settings.crop` names, or all, of a picture of `size` pixels, and returns it as
+/// an image of its own: of a large picture only the part takes memory.
+///
+/// # Errors
+/// As [`render_with`].
+pub fn render_part(
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    size: [u32; 2],
+    control: &Control<'_>,
+) -> Result<(Image, Report), RenderError> {
+    let area = area_of(settings, size)?;
+    let mut image = Image::new(area.width, area.height, [0.0; 4]);
+    let report = draw(scene, view, settings, Canvas::part(&mut image, size, &area), &area, control)?;
+    Ok((image, report))
+}
+
+/// What is to be drawn of a picture of `size`, the settings found sound.
+fn area_of(settings: &Settings, size: [u32; 2]) -> Result<Crop, RenderError> {
+    RenderError::check_size(size)?;
     settings.check()?;
-    let area = settings.area(image.width(), image.height())?;
+    settings.area(size[0], size[1])
+}
+
+fn draw(
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    mut canvas: Canvas<'_>,
+    area: &Crop,
+    control: &Control<'_>,
+) -> Result<Report, RenderError> {
     let mut total = 0.0;
     let result = timed(&mut total, || {
         on_threads(settings.threads, || {
             let scene = &*scene.at_time(None, 0.0);
             match settings.shading {
-                shading if shading.is_lines() => lines::draw(scene, view, settings, image, &area, control),
-                _ => draw_faces(scene, view, settings, image, &area, control),
+                shading if shading.is_lines() => {
+                    lines::draw(scene, view, settings, &mut canvas, area, control)
+                }
+                _ => draw_faces(scene, view, settings, &mut canvas, area, control),
             }
         })
     });
@@ -111,12 +148,12 @@ fn draw_faces(
     scene: &Scene,
     view: &View,
     settings: &Settings,
-    image: &mut Image,
+    canvas: &mut Canvas<'_>,
     area: &Crop,
     control: &Control<'_>,
 ) -> Result<Report, RenderError> {
     let mut report = Report::default();
-    let size = [image.width(), image.height()];
+    let size = canvas.size;
     let (world, materials) = timed(&mut report.seconds.prepare, || {
         let world = World::new(scene, view, size, settings.tolerance_px, false)?;
         Ok::<_, RenderError>((world, resolve_materials(scene, settings.filter, true)?))
@@ -157,7 +194,7 @@ fn draw_faces(
         counters: Counters::default(),
         size,
     };
-    frame.draw(image, area)?;
+    frame.draw(canvas, area)?;
     Ok(frame.finish())
 }
 
@@ -177,7 +214,7 @@ struct Frame<'a, 'w> {
 }
 
 impl Frame<'_, '_> {
-    fn draw(&mut self, image: &mut Image, area: &Crop) -> Result<(), RenderError> {
+    fn draw(&mut self, canvas: &mut Canvas<'_>, area: &Crop) -> Result<(), RenderError> {
         let bands = bands(area, self.shader.world.triangles);
         let samples = self.shader.settings.samples;
         self.report.bands = bands.len() as u32;
@@ -185,15 +222,20 @@ impl Frame<'_, '_> {
         for (b, band) in bands.iter().enumerate() {
             for s in 0..samples {
                 let sample = sample_position(s, samples);
-                self.draw_sample(image, &Window { size: self.size, area: *band, sample }, s)?;
+                self.draw_sample(canvas, &Window { size: self.size, area: *band, sample }, s)?;
                 self.control.report((b as u32 * samples + s + 1) as f32 / steps);
             }
-            self.paper.finish(image, band);
+            self.paper.finish(canvas, band);
         }
         Ok(())
     }
 
-    fn draw_sample(&mut self, image: &mut Image, window: &Window, sample: u32) -> Result<(), RenderError> {
+    fn draw_sample(
+        &mut self,
+        canvas: &mut Canvas<'_>,
+        window: &Window,
+        sample: u32,
+    ) -> Result<(), RenderError> {
         self.planes.resize(window.pixels());
         let mut seconds = 0.0;
         let mut single = (!self.shader.settings.two_pass).then(|| vec![[0.0; 4]; window.pixels()]);
@@ -214,7 +256,7 @@ impl Frame<'_, '_> {
                 first: sample == 0,
                 control: self.control,
             };
-            resolve.run(image)
+            resolve.run(canvas)
         })?;
         self.report.seconds.shade += seconds;
         self.report.pixels_shaded += shaded;
@@ -228,9 +270,8 @@ impl Frame<'_, '_> {
         let in_one_pass = color.is_some();
         let mut target = self.planes.target(&window.area)?;
         if let Some(color) = color {
-            target = target.with_color(senca_raster::ColorPlane::Rgba32F(color)).map_err(|_| {
-                RenderError::ImageTooLarge { width: window.area.width, height: window.area.height, most: 0 }
-            })?;
+            let color = senca_raster::ColorPlane::Rgba32F(color);
+            target = target.with_color(color).map_err(|_| RenderError::area_too_large(&window.area))?;
         }
         target.clear(&EMPTY);
         let mut pass = Pass {
@@ -399,27 +440,25 @@ struct Resolve<'a, 'w> {
 }
 
 impl Resolve<'_, '_> {
-    /// Fills the window's area of `image`, with colours times alpha. Returns the pixels shaded.
-    fn run(&self, image: &mut Image) -> Result<u64, RenderError> {
-        let stride = image.width() as usize;
-        let area = &self.window.area;
-        let rows = area.y as usize * stride..(area.y + area.height) as usize * stride;
+    /// Fills the window's area of the picture, with colours times alpha. Returns the pixels shaded.
+    fn run(&self, canvas: &mut Canvas<'_>) -> Result<u64, RenderError> {
+        let (rows, stride, columns) = canvas.rows(&self.window.area);
         let shaded = AtomicU64::new(0);
         let cancelled = AtomicBool::new(false);
-        let strips = image.pixels_mut()[rows].par_chunks_mut(STRIP_ROWS * stride);
+        let strips = rows.par_chunks_mut(STRIP_ROWS * stride);
         strips.enumerate().for_each(|(i, strip)| {
             if self.control.is_cancelled() {
                 cancelled.store(true, Ordering::Relaxed);
                 return;
             }
-            shaded.fetch_add(self.strip(i * STRIP_ROWS, strip, stride), Ordering::Relaxed);
+            shaded.fetch_add(self.strip(i * STRIP_ROWS, strip, stride, columns.start), Ordering::Relaxed);
         });
         if cancelled.into_inner() { Err(RenderError::Cancelled) } else { Ok(shaded.into_inner()) }
     }
 
     /// Rows from `first_row` of the area on, in blocks, so that a triangle's pixels come together.
-    fn strip(&self, first_row: usize, strip: &mut [[f32; 4]], stride: usize) -> u64 {
-        let (width, left) = (self.window.area.width as usize, self.window.area.x as usize);
+    fn strip(&self, first_row: usize, strip: &mut [[f32; 4]], stride: usize, left: usize) -> u64 {
+        let width = self.window.area.width as usize;
         let mut cache = SetupCache::new(self.shader);
         let mut shaded = 0;
         for start in (0..width).step_by(STRIP_ROWS) {
@@ -513,14 +552,12 @@ impl<'s> Paper<'s> {
     }
 
     /// Divides colours by alpha where the paper shows through.
-    pub(crate) fn finish(&self, image: &mut Image, area: &Crop) {
+    pub(crate) fn finish(&self, canvas: &mut Canvas<'_>, area: &Crop) {
         if self.background != Background::None {
             return;
         }
-        let stride = image.width() as usize;
-        let rows = area.y as usize * stride..(area.y + area.height) as usize * stride;
-        let columns = area.x as usize..(area.x + area.width) as usize;
-        image.pixels_mut()[rows].par_chunks_mut(stride).for_each(|row| {
+        let (rows, stride, columns) = canvas.rows(area);
+        rows.par_chunks_mut(stride).for_each(|row| {
             for pixel in &mut row[columns.clone()] {
                 let a = pixel[3];
                 if a > 0.0 && a < 1.0 {

@@ -14,7 +14,7 @@ use senca_scene::{
 use crate::test_support::{add_lamp, largest_difference, picture_difference};
 use crate::{
     ColorInterpolation, Control, Crop, Culling, Raster, RenderError, Settings, Shading, TextureMethod,
-    render, render_with,
+    render, render_part, render_with,
 };
 
 const BLACK: Option<Background> = Some(Background::Color(LinearRgb::BLACK));
@@ -509,7 +509,27 @@ fn a_crop_is_the_same_part_of_the_whole_and_leaves_the_rest() {
                 assert_eq!(part.pixel(x, y), expected, "{shading:?} at ({x}, {y})");
             }
         }
+        // And as an image of its own.
+        let wish = Settings { crop: Some(crop), ..settings(shading) };
+        let (own, _) = render_part(&scene, &eye(), &wish, [64, 64], &Control::default()).expect("draws");
+        assert_eq!((own.width(), own.height()), (31, 40));
+        for (y, row) in (7..47).enumerate() {
+            assert_eq!(own.row(y as u32), &whole.row(row)[13..44]);
+        }
     }
+}
+
+#[test]
+fn a_part_of_a_picture_too_large_to_hold_is_drawn() {
+    let wish = Settings {
+        crop: Some(Crop { x: 8000, y: 8100, width: 3, height: 2 }),
+        ..settings(Shading::Material)
+    };
+    let size = [16_000, 16_000];
+    let (part, _) = render_part(&still_life(), &eye(), &wish, size, &Control::default()).expect("draws");
+    assert_eq!((part.width(), part.height()), (3, 2));
+    let outside = Settings { crop: Some(Crop { x: 15_999, y: 0, width: 2, height: 1 }), ..wish };
+    assert!(render_part(&still_life(), &eye(), &outside, size, &Control::default()).is_err());
 }
 
 #[test]

@@ -86,11 +86,7 @@ impl Planes {
     }
 
     pub(crate) fn target(&mut self, area: &Crop) -> Result<Target<'_>, RenderError> {
-        let too_large = |_| RenderError::ImageTooLarge {
-            width: area.width,
-            height: area.height,
-            most: senca_raster::MAX_TARGET_SIDE,
-        };
+        let too_large = |_| RenderError::area_too_large(area);
         let target = Target::new(area.width, area.height).map_err(too_large)?;
         target.with_depth(&mut self.depth).and_then(|t| t.with_ids(&mut self.ids)).map_err(too_large)
     }

@@ -413,22 +413,27 @@ pub trait Rasterizer {
     ) -> Counters;
 
     /// Draws lines, in order. The end of a line is not drawn, so that joined lines share no pixel.
+    /// Unless told otherwise, one fragment after another on one thread.
     fn draw_lines(
         &mut self,
         target: &mut Target<'_>,
         lines: &Primitives<'_>,
         state: &State,
         shading: &Shading<'_>,
-    ) -> Counters;
+    ) -> Counters {
+        crate::lines::draw_lines(target, lines, state, shading)
+    }
 
-    /// Draws points as squares, in order.
+    /// Draws points as squares, in order. Unless told otherwise, as [`Self::draw_lines`].
     fn draw_points(
         &mut self,
         target: &mut Target<'_>,
         points: &Primitives<'_>,
         state: &State,
         shading: &Shading<'_>,
-    ) -> Counters;
+    ) -> Counters {
+        crate::lines::draw_points(target, points, state, shading)
+    }
 }
 
 /// What happened in a draw.

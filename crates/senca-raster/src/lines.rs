@@ -25,25 +25,11 @@ pub(crate) fn draw_lines(
     state: &State,
     shading: &Shading<'_>,
 ) -> Counters {
-    crate::pixel::clear_in_scissor(target, state);
-    let map = ScreenMap::new(target.width, target.height, state);
-    let mut sink = Sink::new(target, state, shading, &map);
-    let vertices = vertex_count(lines);
-    for (n, ends) in lines.indices.chunks_exact(2).enumerate() {
-        sink.counters.primitives += 1;
-        let Some(clip) = corners(lines, [ends[0], ends[1]], vertices) else {
-            sink.counters.invalid += 1;
-            continue;
-        };
-        let Some([t0, t1]) = clip_line(clip[0], clip[1], &VIEW_VOLUME) else {
-            sink.counters.outside += 1;
-            continue;
-        };
+    draw_each(target, lines, state, shading, |sink, clip: [Vec4; 2], ends| {
+        let Some([t0, t1]) = clip_line(clip[0], clip[1], &VIEW_VOLUME) else { return false };
         sink.counters.clipped += u64::from(t0 > 0.0 || t1 < 1.0);
-        sink.counters.drawn += 1;
-        sink.id = lines.ids.of(n);
-        let values = [varyings_of(lines, ends[0]), varyings_of(lines, ends[1])];
-        let line = Line::new(&map, clip, [t0, t1], state);
+        let values = ends.map(|i| varyings_of(lines, i));
+        let line = Line::new(sink.map, clip, [t0, t1], state);
         line.walk(state.line_width, |x, y, depth, t| {
             sink.values.count = lines.stride;
             for (k, terms) in sink.values.terms.iter_mut().enumerate().take(lines.stride) {
@@ -55,8 +41,8 @@ pub(crate) fn draw_lines(
             }
             sink.fragment(x, y, depth);
         });
-    }
-    sink.counters
+        true
+    })
 }
 
 pub(crate) fn draw_points(
@@ -65,28 +51,41 @@ pub(crate) fn draw_points(
     state: &State,
     shading: &Shading<'_>,
 ) -> Counters {
-    crate::pixel::clear_in_scissor(target, state);
-    let map = ScreenMap::new(target.width, target.height, state);
-    let mut sink = Sink::new(target, state, shading, &map);
-    let vertices = vertex_count(points);
-    for (n, &index) in points.indices.iter().enumerate() {
-        sink.counters.primitives += 1;
-        let Some([clip]) = corners(points, [index], vertices) else {
-            sink.counters.invalid += 1;
-            continue;
-        };
+    draw_each(target, points, state, shading, |sink, [clip]: [Vec4; 1], [index]| {
         if wholly_outside(&[clip], &VIEW_VOLUME) || clip.w <= 0.0 {
-            sink.counters.outside += 1;
-            continue;
+            return false;
         }
-        sink.counters.drawn += 1;
-        sink.id = points.ids.of(n);
         let values = varyings_of(points, index);
         sink.values.count = values.len();
         for (terms, &value) in sink.values.terms.iter_mut().zip(values) {
             *terms = [value, 0.0, 0.0];
         }
-        sink.square(map.project_clipped(clip), state.point_size);
+        sink.square(sink.map.project_clipped(clip), state.point_size);
+        true
+    })
+}
+
+/// Clears, then calls `draw` with the corners of each primitive, of which there are `N`, and their
+/// numbers; it returns whether any of the primitive is in the view volume.
+fn draw_each<const N: usize>(
+    target: &mut Target<'_>,
+    primitives: &Primitives<'_>,
+    state: &State,
+    shading: &Shading<'_>,
+    mut draw: impl FnMut(&mut Sink<'_, '_>, [Vec4; N], [u32; N]) -> bool,
+) -> Counters {
+    crate::pixel::clear_in_scissor(target, state);
+    let map = ScreenMap::new(target.width, target.height, state);
+    let mut sink = Sink::new(target, state, shading, &map);
+    let vertices = vertex_count(primitives);
+    for (n, &indices) in primitives.indices.as_chunks::<N>().0.iter().enumerate() {
+        sink.counters.primitives += 1;
+        sink.id = primitives.ids.of(n);
+        match corners(primitives, indices, vertices) {
+            None => sink.counters.invalid += 1,
+            Some(clip) if draw(&mut sink, clip, indices) => sink.counters.drawn += 1,
+            Some(_) => sink.counters.outside += 1,
+        }
     }
     sink.counters
 }

@@ -41,26 +41,6 @@ impl Rasterizer for ScanlineRasterizer {
         });
         counters
     }
-
-    fn draw_lines(
-        &mut self,
-        target: &mut Target<'_>,
-        lines: &Primitives<'_>,
-        state: &State,
-        shading: &Shading<'_>,
-    ) -> Counters {
-        crate::lines::draw_lines(target, lines, state, shading)
-    }
-
-    fn draw_points(
-        &mut self,
-        target: &mut Target<'_>,
-        points: &Primitives<'_>,
-        state: &State,
-        shading: &Shading<'_>,
-    ) -> Counters {
-        crate::lines::draw_points(target, points, state, shading)
-    }
 }
 
 /// An edge on its way down: the first column whose centre is on or right of it, row after row.

@@ -119,26 +119,6 @@ impl Rasterizer for TiledRasterizer {
         }
         counters
     }
-
-    fn draw_lines(
-        &mut self,
-        target: &mut Target<'_>,
-        lines: &Primitives<'_>,
-        state: &State,
-        shading: &Shading<'_>,
-    ) -> Counters {
-        crate::lines::draw_lines(target, lines, state, shading)
-    }
-
-    fn draw_points(
-        &mut self,
-        target: &mut Target<'_>,
-        points: &Primitives<'_>,
-        state: &State,
-        shading: &Shading<'_>,
-    ) -> Counters {
-        crate::lines::draw_points(target, points, state, shading)
-    }
 }
 
 /// What the tiles need to know of a draw.

@@ -13,6 +13,7 @@
 mod groups;
 
 use senca_math::glam::Vec3;
+use senca_math::newell_normal_of;
 
 use crate::Mesh;
 
@@ -114,16 +115,7 @@ pub fn polygon_normal_1991(corners: impl IntoIterator<Item = Vec3>) -> Option<Ve
 /// is the mean normal, its length twice the area of the polygon's projection along it.
 #[must_use]
 pub fn newell_vector(corners: impl IntoIterator<Item = Vec3>) -> Vec3 {
-    let mut corners = corners.into_iter();
-    let Some(first) = corners.next() else { return Vec3::ZERO };
-    let mut sum = Vec3::ZERO;
-    let mut before = Vec3::ZERO;
-    for corner in corners {
-        let arm = corner - first;
-        sum += before.cross(arm);
-        before = arm;
-    }
-    sum
+    (2.0 * newell_normal_of(corners.into_iter().map(|c| c.as_dvec3()))).as_vec3()
 }
 
 /// Normals of all polygons of `mesh` by the rule of the 1991 thesis.

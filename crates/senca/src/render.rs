@@ -68,13 +68,8 @@ pub fn render_with(
     let mut prepared = prepare(scene, settings)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
     let drawing = drawing_settings(&mut prepared, settings);
-    let [width, height] = prepared.size;
-    let mut image = Image::new(width, height, [0.0; 4]);
-    let report = senca_pipeline::render_with(&prepared.scene, &prepared.view, &drawing, &mut image, control)?;
-    let image = match &settings.crop {
-        Some(crop) => cut_out(&image, crop),
-        None => image,
-    };
+    let (image, report) =
+        senca_pipeline::render_part(&prepared.scene, &prepared.view, &drawing, prepared.size, control)?;
     Ok((image, Report { prepare_seconds, drawing: report, tracing: None }))
 }
 
@@ -95,16 +90,6 @@ pub(crate) fn drawing_settings(prepared: &mut Prepared<'_>, settings: &Settings)
     }
     drawing.background = Some(background);
     drawing
-}
-
-/// The part of `image` that `crop` names, which lies inside.
-fn cut_out(image: &Image, crop: &senca_pipeline::Crop) -> Image {
-    let mut part = Image::new(crop.width, crop.height, [0.0; 4]);
-    let columns = crop.x as usize..(crop.x + crop.width) as usize;
-    for (y, row) in part.pixels_mut().chunks_exact_mut(columns.len().max(1)).enumerate() {
-        row.copy_from_slice(&image.row(crop.y + y as u32)[columns.clone()]);
-    }
-    part
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 use senca_math::Control;
+use senca_math::View;
 use senca_math::glam::Vec4;
-use senca_math::{Image, View};
 use senca_raster::{
     ColorPlane, ColorSource, Counters, Ids, Primitives, Shading as RasterShading, State, Target,
 };
@@ -11,22 +11,23 @@ use senca_scene::Scene;
 
 use super::{Segment, segments};
 use crate::RenderError;
+use crate::canvas::Canvas;
 use crate::render::{Paper, bands, put_sample, rasterizer, sample_position};
 use crate::report::{Report, timed};
 use crate::settings::{Crop, Settings, Shading};
 use crate::visibility::Window;
 
-/// Draws the edges of `scene` into `area` of `image`.
+/// Draws the edges of `scene` into `area` of the picture.
 pub(crate) fn draw(
     scene: &Scene,
     view: &View,
     settings: &Settings,
-    image: &mut Image,
+    canvas: &mut Canvas<'_>,
     area: &Crop,
     control: &Control<'_>,
 ) -> Result<Report, RenderError> {
     let mut report = Report::default();
-    let size = [image.width(), image.height()];
+    let size = canvas.size;
     let hidden = settings.shading == Shading::HiddenLine;
     let lines =
         timed(&mut report.seconds.vertices, || segments(scene, view, settings, size, hidden, control))?;
@@ -34,7 +35,7 @@ pub(crate) fn draw(
     control.report(0.5);
     let mut seconds = 0.0;
     timed(&mut seconds, || {
-        draw_segments(&lines, &Paper::new(scene, settings, view, size), settings, image, area, control)
+        draw_segments(&lines, &Paper::new(scene, settings, view, size), settings, canvas, area, control)
     })?;
     report.seconds.raster = seconds;
     report.bands = bands(area, 0).len() as u32;
@@ -45,11 +46,11 @@ fn draw_segments(
     lines: &[Segment],
     paper: &Paper<'_>,
     settings: &Settings,
-    image: &mut Image,
+    canvas: &mut Canvas<'_>,
     area: &Crop,
     control: &Control<'_>,
 ) -> Result<Counters, RenderError> {
-    let size = [image.width(), image.height()];
+    let size = canvas.size;
     let mut counters = Counters::default();
     for band in bands(area, 0) {
         for s in 0..settings.samples {
@@ -57,9 +58,9 @@ fn draw_segments(
             let window = Window { size, area: band, sample: sample_position(s, settings.samples) };
             let mut color = vec![[0.0; 4]; window.pixels()];
             counters += draw_sample(lines, settings, &window, paper, &mut color)?;
-            resolve(image, &window, &color, 1.0 / settings.samples as f32, s == 0);
+            resolve(canvas, &window, &color, 1.0 / settings.samples as f32, s == 0);
         }
-        paper.finish(image, &band);
+        paper.finish(canvas, &band);
     }
     Ok(counters)
 }
@@ -78,11 +79,7 @@ fn draw_sample(
             *pixel = paper.at(area.y + y as u32, || window.place(x, y).map(f64::from));
         }
     }
-    let too_large = |_| RenderError::ImageTooLarge {
-        width: area.width,
-        height: area.height,
-        most: senca_raster::MAX_TARGET_SIDE,
-    };
+    let too_large = |_| RenderError::area_too_large(&area);
     let target = Target::new(area.width, area.height).and_then(|t| t.with_color(ColorPlane::Rgba32F(color)));
     let (positions, varyings) = vertices(lines, window);
     let indices: Vec<u32> = (0..positions.len() as u32).collect();
@@ -118,12 +115,11 @@ fn vertices(lines: &[Segment], window: &Window) -> (Vec<Vec4>, Vec<f32>) {
 }
 
 /// Adds a sample to the picture.
-fn resolve(image: &mut Image, window: &Window, color: &[[f32; 4]], weight: f32, first: bool) {
-    let (stride, area) = (image.width() as usize, window.area);
-    let rows = area.y as usize * stride..(area.y + area.height) as usize * stride;
-    let from = color.par_chunks(area.width as usize);
-    image.pixels_mut()[rows].par_chunks_mut(stride).zip(from).for_each(|(row, from)| {
-        let row = &mut row[area.x as usize..(area.x + area.width) as usize];
+fn resolve(canvas: &mut Canvas<'_>, window: &Window, color: &[[f32; 4]], weight: f32, first: bool) {
+    let from = color.par_chunks(window.area.width as usize);
+    let (rows, stride, columns) = canvas.rows(&window.area);
+    rows.par_chunks_mut(stride).zip(from).for_each(|(row, from)| {
+        let row = &mut row[columns.clone()];
         row.iter_mut().zip(from).for_each(|(pixel, &rgba)| put_sample(pixel, rgba, weight, first));
     });
 }

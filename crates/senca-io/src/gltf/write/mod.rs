@@ -42,9 +42,7 @@ pub fn write_glb(
     settings: &WriteSettings,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<u8>, WriteError> {
-    let mut output = Output::of(scene, settings)?;
-    warnings.append(&mut output.warnings);
-    output.into_glb()
+    Output::of(scene, settings, warnings)?.into_glb()
 }
 
 /// Writes `scene` as one `.gltf` text file, with buffers and pictures inside as data URIs. What the
@@ -57,9 +55,7 @@ pub fn write_gltf(
     settings: &WriteSettings,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<u8>, WriteError> {
-    let mut output = Output::of(scene, settings)?;
-    warnings.append(&mut output.warnings);
-    output.into_text()
+    Output::of(scene, settings, warnings)?.into_text()
 }
 
 /// A file in the making.
@@ -86,13 +82,15 @@ enum Target {
 }
 
 impl Output {
-    fn of(scene: &Scene, settings: &WriteSettings) -> Result<Self, WriteError> {
+    /// The file of `scene`; what it cannot hold is appended to `warnings`.
+    fn of(scene: &Scene, settings: &WriteSettings, warnings: &mut Vec<Warning>) -> Result<Self, WriteError> {
         let mut output = Self::default();
         output.warn_of_losses(scene);
         output.add_materials(scene)?;
         let meshes = output.add_meshes(scene, settings)?;
         output.add_nodes(scene, &meshes);
         output.add_animations(scene);
+        warnings.append(&mut output.warnings);
         Ok(output)
     }
 
