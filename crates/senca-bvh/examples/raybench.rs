@@ -200,23 +200,25 @@ fn count(bvh: &TriangleBvh, rays: &[Expected], any: bool) -> usize {
 /// Hits that differ from the expected ones: by more than rounding, and in the triangle only.
 fn compare(bvh: &TriangleBvh, set: &Set) {
     let (mut wrong, mut tied, mut occluded) = (0, 0, 0);
-    let mut counts = TraversalCounts::default();
+    let [mut counts, mut any_counts] = [TraversalCounts::default(); 2];
     for expected in &set.rays {
         let hit = bvh.closest_counted(&expected.ray, &mut counts);
         let (t, triangle) = hit.map_or((f32::INFINITY, u32::MAX), |hit| (hit.t, hit.triangle));
         let close = t == expected.t || (t - expected.t).abs() <= 1e-5 * expected.t.abs().max(1.0);
         wrong += usize::from(!close);
         tied += usize::from(close && triangle != expected.triangle);
-        occluded += usize::from(bvh.occluded(&expected.ray) != hit.is_some());
+        occluded += usize::from(bvh.occluded_counted(&expected.ray, &mut any_counts) != hit.is_some());
     }
     let rays = set.rays.len() as f64;
     println!(
         "{:<8} {} rays: {wrong} other distances, {tied} other triangles at the same distance, {occluded} any unlike \
-         closest; {:.2} nodes, {:.2} triangles a ray",
+         closest; {:.2} nodes, {:.2} triangles a ray, {:.2} and {:.2} for any hit",
         set.name,
         set.rays.len(),
         counts.nodes as f64 / rays,
-        counts.triangles as f64 / rays
+        counts.triangles as f64 / rays,
+        any_counts.nodes as f64 / rays,
+        any_counts.triangles as f64 / rays
     );
 }
 

@@ -9,6 +9,9 @@ use crate::watertight::SMALLEST_DETERMINANT;
 /// Triangles of a block.
 pub(crate) const LANES: usize = 8;
 
+/// Share of a box that the triangles of a wall cover.
+const WALL: f32 = 0.9;
+
 /// Corners of up to eight triangles.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -44,6 +47,20 @@ impl Block {
 
     pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
         self.corners.map(|rows| Vec3::from_array(rows.map(|row| row[lane])))
+    }
+
+    /// Whether few rays get through the box of the first `count` triangles without meeting one: as if they
+    /// came from everywhere, by what the triangles cover of the box's sides, seen along the axes.
+    pub(crate) fn is_wall(&self, count: usize) -> bool {
+        let (mut low, mut high, mut covered) = (Vec3::INFINITY, Vec3::NEG_INFINITY, Vec3::ZERO);
+        for [a, b, c] in (0..count.min(LANES)).map(|lane| self.corners(lane)) {
+            low = low.min(a).min(b).min(c);
+            high = high.max(a).max(b).max(c);
+            covered += 0.5 * (b - a).cross(c - a).abs();
+        }
+        let size = high - low;
+        let sides = Vec3::new(size.y * size.z, size.z * size.x, size.x * size.y);
+        covered.min(sides).element_sum() > WALL * sides.element_sum()
     }
 
     /// The same decisions and bytes as [`crate::watertight::intersect`], for `count` triangles at once.

@@ -16,6 +16,8 @@ pub(crate) struct Node {
     pub(crate) children: [u32; WIDTH],
     /// A bit per slot with a leaf.
     pub(crate) leaves: u8,
+    /// A bit per slot with a leaf that few rays get through.
+    pub(crate) walls: u8,
 }
 
 impl Node {
@@ -30,6 +32,7 @@ impl Node {
         ],
         children: [0; WIDTH],
         leaves: 0,
+        walls: 0,
     };
 
     pub(crate) fn set(&mut self, slot: usize, bounds: &Aabb32, child: Child) {
@@ -43,6 +46,12 @@ impl Node {
 }
 
 impl Node {
+    /// A bit per slot with a leaf of which `is` holds.
+    pub(crate) fn leaf_slots(&self, is: impl Fn(Child) -> bool) -> u8 {
+        let holds = |slot: usize| self.leaves >> slot & 1 == 1 && is(Child(self.children[slot]));
+        (0..WIDTH).fold(0, |slots, slot| slots | u8::from(holds(slot)) << slot)
+    }
+
     /// Makes boxes that end at `end` or beyond endless there.
     pub(crate) fn open(&mut self, end: f32) {
         for (row, bounds) in self.bounds.iter_mut().enumerate() {

@@ -29,7 +29,45 @@ pub(crate) struct PreparedRay {
     pub(crate) t_unit: f32,
 }
 
+/// What turns a distance to a plane into one product and one difference, `plane * reciprocal - offset`.
+///
+/// The difference may lose all digits when the origin is far away, of which the offsets take account; what
+/// is left is covered by reciprocals that are widened twice as much. So no box is entered later, or left
+/// earlier, than [`PreparedRay::interval`] says, whether product and difference are fused or not.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Products {
+    pub(crate) near_reciprocal: [f32; 3],
+    pub(crate) near_offset: [f32; 3],
+    pub(crate) far_reciprocal: [f32; 3],
+    pub(crate) far_offset: [f32; 3],
+}
+
+/// Share of an offset that it is widened by: 2^-24 is lost in it, and as much in a product with a plane
+/// that is not fused.
+const OFFSET_WIDENING: f32 = 1.0 / (1 << 22) as f32;
+
+/// Offsets and reciprocals above are not computed with: neither is infinite then, nor anything near it.
+const LARGEST_PRODUCT: f32 = 1e18;
+
 impl PreparedRay {
+    /// None where they could be infinite: for rays along an axis, or far from everything.
+    #[inline(always)]
+    pub(crate) fn products(&self) -> Option<Products> {
+        let [mut near_reciprocal, mut near_offset] = [[0.0; 3]; 2];
+        let [mut far_reciprocal, mut far_offset] = [[0.0; 3]; 2];
+        let mut is_small = true;
+        for axis in 0..3 {
+            near_reciprocal[axis] = self.near_reciprocal[axis] * (1.0 - WIDENING);
+            far_reciprocal[axis] = self.far_reciprocal[axis] * (1.0 + WIDENING);
+            let near = self.origin[axis] * near_reciprocal[axis];
+            let far = self.origin[axis] * far_reciprocal[axis];
+            near_offset[axis] = near + near.abs() * OFFSET_WIDENING;
+            far_offset[axis] = far - far.abs() * OFFSET_WIDENING;
+            is_small &= far_reciprocal[axis].abs() < LARGEST_PRODUCT && far.abs() < LARGEST_PRODUCT;
+        }
+        is_small.then_some(Products { near_reciprocal, near_offset, far_reciprocal, far_offset })
+    }
+
     /// None when the ray is not valid.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray32) -> Option<Self> {

@@ -3,8 +3,8 @@
 use fearless_simd::{Simd, f32x8, prelude::*};
 
 use crate::node::{Child, Node, WIDTH};
-use crate::order::{ORDERS, Order, octant};
-use crate::prepared::PreparedRay;
+use crate::order::{ORDERS, octant};
+use crate::prepared::{PreparedRay, Products};
 use crate::stack::{Places, Stack};
 
 /// Levels of nodes a hierarchy may have; see the build.
@@ -35,19 +35,26 @@ pub(crate) struct LaneRay<'a, S: Simd> {
     pub(crate) near_reciprocal: [f32x8<S>; 3],
     pub(crate) far_reciprocal: [f32x8<S>; 3],
     pub(crate) t_min: f32x8<S>,
+    products: LaneProducts<S>,
     /// Row of a node's bounds with the planes the ray meets first.
     near: [usize; 3],
 }
 
 impl<'a, S: Simd> LaneRay<'a, S> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, ray: &'a PreparedRay) -> Self {
+    pub(crate) fn new(simd: S, ray: &'a PreparedRay, products: &Products) -> Self {
         Self {
             prepared: ray,
             origin: splat(simd, ray.origin),
             near_reciprocal: splat(simd, ray.near_reciprocal),
             far_reciprocal: splat(simd, ray.far_reciprocal),
             t_min: f32x8::splat(simd, ray.t_min),
+            products: LaneProducts {
+                near_reciprocal: splat(simd, products.near_reciprocal),
+                near_offset: splat(simd, products.near_offset),
+                far_reciprocal: splat(simd, products.far_reciprocal),
+                far_offset: splat(simd, products.far_offset),
+            },
             near: [
                 usize::from(ray.downward[0]),
                 2 + usize::from(ray.downward[1]),
@@ -55,6 +62,14 @@ impl<'a, S: Simd> LaneRay<'a, S> {
             ],
         }
     }
+}
+
+/// [`Products`] in all lanes.
+struct LaneProducts<S: Simd> {
+    near_reciprocal: [f32x8<S>; 3],
+    near_offset: [f32x8<S>; 3],
+    far_reciprocal: [f32x8<S>; 3],
+    far_offset: [f32x8<S>; 3],
 }
 
 #[inline(always)]
@@ -83,16 +98,34 @@ pub(crate) fn min_or<S: Simd>(value: f32x8<S>, keep: f32x8<S>) -> f32x8<S> {
     }
 }
 
-/// Where the ray enters the children, and which of them it meets between its limits.
+/// Where the ray enters the children, and which of them it meets between its limits. With PRODUCTS, by one
+/// instruction a plane, and maybe a little before and after the leaves' own test would say so.
 #[inline(always)]
-fn meet<S: Simd>(simd: S, ray: &LaneRay<S>, node: &Node, t_max: f32) -> (f32x8<S>, u32) {
+fn meet<S: Simd, const PRODUCTS: bool>(
+    simd: S,
+    ray: &LaneRay<S>,
+    node: &Node,
+    t_max: f32,
+) -> (f32x8<S>, u32) {
     let mut enter = ray.t_min;
     let mut leave = f32x8::splat(simd, t_max);
     for axis in 0..3 {
         let near = f32x8::load_array_ref(simd, &node.bounds[ray.near[axis]]);
         let far = f32x8::load_array_ref(simd, &node.bounds[ray.near[axis] ^ 1]);
-        enter = max_or((near - ray.origin[axis]) * ray.near_reciprocal[axis], enter);
-        leave = min_or((far - ray.origin[axis]) * ray.far_reciprocal[axis], leave);
+        let (near, far) = if PRODUCTS {
+            let products = &ray.products;
+            (
+                near.mul_sub(products.near_reciprocal[axis], products.near_offset[axis]),
+                far.mul_sub(products.far_reciprocal[axis], products.far_offset[axis]),
+            )
+        } else {
+            (
+                (near - ray.origin[axis]) * ray.near_reciprocal[axis],
+                (far - ray.origin[axis]) * ray.far_reciprocal[axis],
+            )
+        };
+        enter = max_or(near, enter);
+        leave = min_or(far, leave);
     }
     (enter, enter.simd_le(leave).to_bitmask() as u32)
 }
@@ -104,39 +137,57 @@ pub(crate) fn walk<S: Simd, V: Visitor>(simd: S, nodes: &[Node], ray: &PreparedR
     if nodes.is_empty() {
         return;
     }
-    let mut places = Places::<STACK>::new();
-    // When any hit ends the walk, t_max stays and there is no distance to compare with it.
-    if V::ANY {
-        descend(simd, nodes, ray, visitor, Stack::<_, false>::new(&mut places));
+    if let Some(products) = ray.products() {
+        let lanes = LaneRay::new(simd, ray, &products);
+        descend::<S, V, true>(simd, nodes, &lanes, visitor);
     } else {
-        descend(simd, nodes, ray, visitor, Stack::<_, true>::new(&mut places));
+        let lanes = LaneRay::new(simd, ray, &Products::default());
+        descend::<S, V, false>(simd, nodes, &lanes, visitor);
     }
 }
 
 #[inline(always)]
-fn descend<S: Simd, V: Visitor, const DISTANCES: bool>(
+fn descend<S: Simd, V: Visitor, const PRODUCTS: bool>(
     simd: S,
     nodes: &[Node],
-    ray: &PreparedRay,
+    lanes: &LaneRay<'_, S>,
+    visitor: &mut V,
+) {
+    let mut places = Places::<STACK>::new();
+    // When any hit ends the walk, t_max stays and there is no distance to compare with it.
+    if V::ANY {
+        let stack = Stack::<_, false>::new(&mut places);
+        step_by_step::<S, V, PRODUCTS, false>(simd, nodes, lanes, visitor, stack);
+    } else {
+        let stack = Stack::<_, true>::new(&mut places);
+        step_by_step::<S, V, PRODUCTS, true>(simd, nodes, lanes, visitor, stack);
+    }
+}
+
+#[inline(always)]
+fn step_by_step<S: Simd, V: Visitor, const PRODUCTS: bool, const DISTANCES: bool>(
+    simd: S,
+    nodes: &[Node],
+    lanes: &LaneRay<'_, S>,
     visitor: &mut V,
     mut stack: Stack<'_, STACK, DISTANCES>,
 ) {
-    let lanes = LaneRay::new(simd, ray);
-    let orders = &ORDERS[octant(ray)];
+    let ray = lanes.prepared;
+    // Any order will do for any hit, and a table that is always the same stays in the cache.
+    let orders = &ORDERS[if V::ANY { 0 } else { octant(ray) }];
     let mut t_max = ray.t_max;
     let mut current = Child::node(0);
     loop {
         if current.is_leaf() {
-            if visitor.leaf(simd, &lanes, current, &mut t_max) {
+            if visitor.leaf(simd, lanes, current, &mut t_max) {
                 return;
             }
         } else {
             visitor.node();
             let node = &nodes[current.node_index()];
-            let (enter, mask) = meet(simd, &lanes, node, t_max);
+            let (enter, mask) = meet::<S, PRODUCTS>(simd, lanes, node, t_max);
             if mask != 0 {
-                let next =
-                    if V::ANY { any_slot(node, mask, orders) } else { orders[mask as usize % 256].nearest() };
+                let next = if V::ANY { any_slot(node, mask) } else { orders[mask as usize % 256].nearest() };
                 // The others wait, the nearest of them last.
                 let others = mask & !(1 << next);
                 let (entries, children) = orders[others as usize % 256].arrange(simd, enter, &node.children);
@@ -152,9 +203,11 @@ fn descend<S: Simd, V: Visitor, const DISTANCES: bool>(
     }
 }
 
-/// The slot to look into first when any hit will do: a leaf, which may end the walk, before a node.
+/// The slot to look into first when any hit will do: a wall, else any leaf, which may end the walk, before a
+/// node.
 #[inline(always)]
-fn any_slot(node: &Node, mask: u32, orders: &[Order; 256]) -> usize {
-    let leaves = mask & u32::from(node.leaves);
-    orders[if leaves != 0 { leaves } else { mask } as usize % 256].nearest()
+fn any_slot(node: &Node, mask: u32) -> usize {
+    let (walls, leaves) = (mask & u32::from(node.walls), mask & u32::from(node.leaves));
+    let likely = if leaves != 0 { leaves } else { mask };
+    if walls != 0 { walls } else { likely }.trailing_zeros() as usize % WIDTH
 }

@@ -60,7 +60,7 @@ impl TriangleBvh {
         }
         let tree = build(items(points, triangles)?, LANES, settings.level);
         let corners = |triangle: u32| triangles[triangle as usize].map(|index| points[index as usize]);
-        let blocks = tree
+        let blocks: Vec<Block> = tree
             .leaves
             .par_iter()
             .with_min_len(1024)
@@ -73,7 +73,12 @@ impl TriangleBvh {
                 block
             })
             .collect();
-        Ok(Self { nodes: tree.nodes, blocks, bounds: tree.extent.as_box(), level: settings.level })
+        let mut nodes = tree.nodes;
+        nodes.par_iter_mut().with_min_len(1024).for_each(|node| {
+            node.walls =
+                node.leaf_slots(|leaf| blocks[leaf.leaf_index()].is_wall(leaf.leaf_count() as usize));
+        });
+        Ok(Self { nodes, blocks, bounds: tree.extent.as_box(), level: settings.level })
     }
 
     /// The box around all triangles that can be met; empty if there are none.

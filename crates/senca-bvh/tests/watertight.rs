@@ -7,8 +7,20 @@ fn build(points: &[Vec3], triangles: &[[u32; 3]], level: SimdLevel) -> TriangleB
     TriangleBvh::build(points, triangles, &BuildSettings { level }).unwrap()
 }
 
-fn levels() -> [SimdLevel; 2] {
-    [SimdLevel::new(), SimdLevel::baseline()]
+/// The best level of this machine, those below that have been asked for by name, and the lowest.
+fn levels() -> Vec<SimdLevel> {
+    let best = SimdLevel::new();
+    [
+        Some(best),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        best.as_avx2().map(SimdLevel::Avx2),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        best.as_sse4_2().map(SimdLevel::Sse4_2),
+        Some(SimdLevel::baseline()),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// Numbers in [0, 1).
