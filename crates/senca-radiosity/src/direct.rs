@@ -26,6 +26,7 @@ use senca_shading::{Lamp, ShadingLight, distance_attenuation};
 
 use crate::{ElementMesh, Occluders, PatchPolygon, RadiosityError};
 use sky::Sky;
+pub(crate) use sky::cosine_direction;
 
 /// How finely elements look at lamps.
 #[derive(Clone, Copy, Debug, PartialEq)]

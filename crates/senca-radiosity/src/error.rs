@@ -40,6 +40,14 @@ pub enum RadiosityError {
         /// The limit.
         limit: usize,
     },
+    /// There would be more form factors than memory is allowed for.
+    #[error(
+        "the mesh needs more than {limit} form factors: allow larger patches, or use the hierarchical method"
+    )]
+    TooManyFactors {
+        /// The limit.
+        limit: u64,
+    },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

@@ -6,6 +6,7 @@
 //! what the patch sees, weighted by form factors. A point light of intensity 1 straight above a white
 //! patch makes it show 1. In photometric units a shown 1 is 1 cd/m², and the illuminance π H lux.
 
+pub mod book;
 mod direct;
 mod error;
 pub mod form_factor;

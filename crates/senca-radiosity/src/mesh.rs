@@ -175,6 +175,17 @@ impl ElementMesh {
         self.surfaces[surface as usize].transmittance = share;
     }
 
+    /// Holds reflectances to `limit` per channel, and takes negative ones and those that are not a
+    /// number as 0. Tells how many surfaces were changed.
+    pub fn limit_reflectance(&mut self, limit: f32) -> usize {
+        let held = |r: f32| if r > 0.0 { r.min(limit) } else { 0.0 };
+        let change = |surface: &mut RadiantSurface| {
+            let new = surface.reflectance.map(held);
+            std::mem::replace(&mut surface.reflectance, new) != new
+        };
+        self.surfaces.iter_mut().map(change).filter(|changed| *changed).count()
+    }
+
     /// Box around the polygons.
     #[must_use]
     pub fn bounds(&self) -> Aabb {

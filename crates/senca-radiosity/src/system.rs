@@ -18,6 +18,7 @@
 mod matrix;
 mod shooting;
 mod solvers;
+mod two_level;
 
 #[cfg(test)]
 mod tests;
@@ -27,6 +28,7 @@ use crate::RadiosityError;
 pub use matrix::FactorMatrix;
 pub use shooting::Shooting;
 pub use solvers::{GaussSeidel, Jacobi, Outcome, StopRule};
+pub use two_level::{Cost, condensed, parts};
 
 /// A value per channel: red, green, blue.
 pub type Rgb64 = [f64; 3];

@@ -68,7 +68,7 @@ impl Sky {
 
 /// The `i`th of `n` directions about +z, spread evenly by the cosine: Hammersley's points on the disc,
 /// raised to the hemisphere (Malley).
-fn cosine_direction(i: u32, n: u32) -> DVec3 {
+pub(crate) fn cosine_direction(i: u32, n: u32) -> DVec3 {
     let u = (f64::from(i) + 0.5) / f64::from(n);
     // Half a step off, so that no direction lies on an axis.
     let v = f64::from(i.reverse_bits()) / f64::from(u32::MAX) + 0.5 / f64::from(n);

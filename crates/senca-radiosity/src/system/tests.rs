@@ -217,6 +217,46 @@ fn every_sweep_can_be_watched_and_stopped() {
     assert_eq!(solver.radiosity(), system.emission());
 }
 
+/// A patch in two parts, and two others.
+fn divided() -> System {
+    let rows = [[0.0, 0.0, 0.8, 0.2], [0.0, 0.0, 0.4, 0.6], [0.1, 0.15, 0.5, 0.25], [0.05, 0.45, 0.5, 0.0]];
+    let rho = [0.5, 0.5, 0.8, 0.6].map(|r| [r; 3]).to_vec();
+    let emission = [1.0, 1.0, 0.0, 0.0].map(|e| [e; 3]).to_vec();
+    let areas = vec![0.25, 0.75, 2.0, 1.0];
+    System::new(FactorMatrix::from_dense(&rows), areas, rho, emission).expect("in range")
+}
+
+#[test]
+fn two_levels_without_more_equations() {
+    let (all, patch_of) = (divided(), [0, 0, 1, 2]);
+    assert!(all.factors().reciprocity_error(all.areas()) < 1e-15);
+    let full = solved(&all);
+    assert_close(&full, &[1.308_557_457_2, 1.298_777_506_1, 0.626_894_865_5, 0.577_995_11], 6e-11);
+    let patches = condensed(&all, &patch_of).expect("in range");
+    for (i, expected) in [[0.0, 0.5, 0.5], [0.25, 0.5, 0.25], [0.5, 0.5, 0.0]].iter().enumerate() {
+        for (j, expected) in expected.iter().enumerate() {
+            assert!((patches.factors().get(i, j) - expected).abs() < 1e-15);
+        }
+    }
+    let big = solved(&patches);
+    assert_close(&big, &[1.301_204_819_3, 0.626_506_024_1, 0.578_313_253], 6e-11);
+    let small = parts(&all, &patch_of, &big);
+    assert_close(&small, &[1.308_433_734_9, 1.298_795_180_7], 6e-11);
+    // The mean of the parts is the patch; that of the full system differs a little.
+    let mean = |b: &[Rgb64]| 0.25 * b[0][0] + 0.75 * b[1][0];
+    assert!((mean(&small) - big[0][0]).abs() < 1e-12);
+    assert!((mean(&full) - 1.301_222_493_9).abs() < 6e-11);
+}
+
+#[test]
+fn cost_of_two_levels() {
+    let flat = Cost::flat(100, 16);
+    assert_eq!((flat.equations, flat.factors), (1600, 2_560_000));
+    let two = Cost::two_level(100, 16);
+    assert_eq!((two.equations, two.factors, two.partial_factors), (100, 10_000, 160_000));
+    assert_eq!(two.steps_for_parts, 160_000);
+}
+
 proptest! {
     /// Open scenes: factors that obey reciprocity and sum to less than 1 lose nothing but what they say.
     #[test]
