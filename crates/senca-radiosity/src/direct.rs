@@ -135,6 +135,18 @@ impl DirectLight {
         Ok(light)
     }
 
+    /// Takes out the area lights that are plain matt lamps, those whose light falls with the square of
+    /// the distance and has no end: their shapes, whose fronts shine, and what they show. A method that
+    /// has them among its emitters lights by the rest of this.
+    #[must_use]
+    pub fn take_plain_areas(&mut self) -> Vec<(PatchPolygon, LinearRgb)> {
+        let plain = |area: &Rectangle| area.attenuation == Attenuation::InverseSquare { range: None };
+        let (taken, left) = self.rectangles.iter().partition(|area| plain(area));
+        self.rectangles = left;
+        let taken: Vec<Rectangle> = taken;
+        taken.iter().map(Rectangle::as_emitter).collect()
+    }
+
     /// Whether there is neither a lamp nor a sky.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -275,6 +287,18 @@ impl Rectangle {
         let axis = if across.dot(forward) < 0.0 { -across } else { across };
         let middle = world_from_light.transform_point3(DVec3::ZERO);
         middle.is_finite().then_some(Self { middle, edges, axis, color, attenuation })
+    }
+
+    /// The polygon, and what it shows.
+    fn as_emitter(&self) -> (PatchPolygon, LinearRgb) {
+        let [u, v] = self.edges.map(|edge| 0.5 * edge);
+        let mut corners = [-u - v, u - v, u + v, v - u].map(|off| self.middle + off);
+        if PatchPolygon::quad(corners).normal_and_area().0.dot(self.axis) < 0.0 {
+            corners.reverse();
+        }
+        let shape = PatchPolygon::quad(corners);
+        let area = shape.normal_and_area().1;
+        (shape, self.color * (std::f64::consts::PI / area) as f32)
     }
 
     fn at(&self, occluders: &Occluders, place: DVec3, normal: DVec3, cells: u32) -> LinearRgb {

@@ -28,7 +28,7 @@ use crate::RadiosityError;
 pub use matrix::FactorMatrix;
 pub use shooting::Shooting;
 pub use solvers::{GaussSeidel, Jacobi, Outcome, StopRule};
-pub use two_level::{Cost, condensed, parts};
+pub use two_level::{condensed, parts};
 
 /// A value per channel: red, green, blue.
 pub type Rgb64 = [f64; 3];

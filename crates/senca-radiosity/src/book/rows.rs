@@ -9,7 +9,7 @@ use senca_math::Control;
 use senca_math::glam::DVec3;
 
 use super::{Book, FactorMethod};
-use crate::form_factor::{differential, exchange, point_to_polygon};
+use crate::form_factor::{CellFactor, Hemicube, HemicubeView, differential, exchange, point_to_polygon};
 use crate::{ElementMesh, Occluders, PatchPolygon, RadiosityError};
 
 /// Farther than this many radii of the smaller polygon, Lambert's formula at a few of its places does.
@@ -20,7 +20,10 @@ const DIGITS: f64 = 9.2;
 
 /// Exchange from elements to patches, by element; empty for those that are divided.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rows(Vec<Vec<(u32, f32)>>);
+pub(super) struct Rows(Vec<Row>);
+
+/// Patches with the exchange, ascending.
+type Row = Vec<(u32, f32)>;
 
 impl Rows {
     pub(super) fn clear(&mut self, elements: usize) {
@@ -39,10 +42,6 @@ impl Rows {
     pub(super) fn forget(&mut self, element: u32) {
         self.0[element as usize] = Vec::new();
     }
-
-    fn set(&mut self, element: u32, row: Vec<(u32, f32)>) {
-        self.0[element as usize] = row;
-    }
 }
 
 impl Book<'_> {
@@ -51,11 +50,13 @@ impl Book<'_> {
     pub(super) fn patch_factors(&mut self, control: &Control<'_>) -> Result<(), RadiosityError> {
         for round in 0..=self.settings.depth {
             self.check_size(self.patches.len())?;
-            let upper = self.upper_rows(control)?;
-            let too_big = self.too_big(&upper);
+            let rows = self.patch_rows(control)?;
+            let too_big = self.too_big(&rows);
             let last = round == self.settings.depth;
             if last || !self.divide_patches(&too_big) {
-                self.set_rows(upper);
+                for (&patch, row) in self.patches.iter().zip(rows) {
+                    self.rows.0[patch as usize] = row;
+                }
                 return Ok(());
             }
             self.illuminate(control)?;
@@ -63,15 +64,22 @@ impl Book<'_> {
         Ok(())
     }
 
+    /// Exchange of each patch with all others.
+    fn patch_rows(&self, control: &Control<'_>) -> Result<Vec<Row>, RadiosityError> {
+        match self.settings.factors {
+            FactorMethod::RayCast { rays } => Ok(both_halves(self.upper_rows(rays, control)?)),
+            FactorMethod::Hemicube { .. } => self.rows_of(&self.patches, control),
+        }
+    }
+
     /// Exchange of each patch with those of higher number.
-    fn upper_rows(&self, control: &Control<'_>) -> Result<Vec<Vec<(u32, f32)>>, RadiosityError> {
+    fn upper_rows(&self, rays: u32, control: &Control<'_>) -> Result<Vec<Row>, RadiosityError> {
         let n = self.patches.len();
         let done = AtomicUsize::new(0);
         let row = |i: usize| {
             control.check()?;
             let from = Side::of(&self.mesh, self.patches[i]);
-            let higher = (i as u32 + 1..n as u32).filter_map(|j| self.pair(&from, j));
-            let row: Vec<(u32, f32)> = higher.collect();
+            let row: Row = (i as u32 + 1..n as u32).filter_map(|j| self.pair(&from, j, rays)).collect();
             let pairs = done.fetch_add(n - i, Ordering::Relaxed) + n - i;
             control.report(0.5 * (2.0 * pairs as f32 / (n as f32 * n as f32)).min(1.0));
             Ok(row)
@@ -79,21 +87,41 @@ impl Book<'_> {
         (0..n).into_par_iter().with_max_len(1).map(row).collect()
     }
 
+    /// Exchange of some elements with all patches but their own.
+    fn rows_of(&self, elements: &[u32], control: &Control<'_>) -> Result<Vec<Row>, RadiosityError> {
+        match self.settings.factors {
+            FactorMethod::RayCast { rays } => {
+                let row = |&element: &u32| {
+                    control.check()?;
+                    let from = Side::of(&self.mesh, element);
+                    let own = self.patch_of[element as usize];
+                    let others = (0..self.patches.len() as u32).filter(|&patch| patch != own);
+                    Ok(others.filter_map(|patch| self.pair(&from, patch, rays)).collect())
+                };
+                elements.par_iter().with_max_len(1).map(row).collect()
+            }
+            FactorMethod::Hemicube { resolution, parts } => {
+                let hemicube = Hemicube::new(resolution, CellFactor::Exact)?;
+                let shapes: Vec<PatchPolygon> = self.patches.iter().map(|&p| self.mesh.shape(p)).collect();
+                let row = |view: &mut HemicubeView<'_>, &element: &u32| {
+                    control.check()?;
+                    let area = self.mesh.elements()[element as usize].area;
+                    let factors = view.factors(self.mesh.shape(element).corners(), parts as usize, &shapes);
+                    let seen = (0..).zip(factors).filter(|(_, factor)| *factor > 0.0);
+                    Ok(seen.map(|(patch, factor)| (patch, (factor * area) as f32)).collect())
+                };
+                elements.par_iter().map_init(|| HemicubeView::new(&hemicube), row).collect()
+            }
+        }
+    }
+
     /// Factors of new leaves to all patches.
     pub(super) fn element_factors(&mut self, control: &Control<'_>) -> Result<(), RadiosityError> {
         let known = self.rows.0.len() as u32;
         let new: Vec<u32> = self.mesh.leaves().filter(|&leaf| leaf >= known).collect();
         self.rows.0.resize(self.mesh.elements().len(), Vec::new());
-        let row = |&leaf: &u32| {
-            control.check()?;
-            let from = Side::of(&self.mesh, leaf);
-            let own = self.patch_of[leaf as usize];
-            let others = (0..self.patches.len() as u32).filter(|&patch| patch != own);
-            Ok((leaf, others.filter_map(|patch| self.pair(&from, patch)).collect::<Vec<_>>()))
-        };
-        let rows: Result<Vec<_>, RadiosityError> = new.par_iter().with_max_len(1).map(row).collect();
-        for (leaf, row) in rows? {
-            self.rows.set(leaf, row);
+        for (&leaf, row) in new.iter().zip(self.rows_of(&new, control)?) {
+            self.rows.0[leaf as usize] = row;
         }
         Ok(())
     }
@@ -106,30 +134,13 @@ impl Book<'_> {
         if needed > limit { Err(RadiosityError::TooManyFactors { limit }) } else { Ok(()) }
     }
 
-    /// Both halves of the symmetric exchange.
-    fn set_rows(&mut self, upper: Vec<Vec<(u32, f32)>>) {
-        let mut rows: Vec<Vec<(u32, f32)>> = vec![Vec::new(); upper.len()];
-        for (i, row) in (0..).zip(&upper) {
-            for &(j, exchange) in row {
-                rows[j as usize].push((i, exchange));
-            }
-        }
-        for ((row, higher), &patch) in rows.into_iter().zip(upper).zip(&self.patches) {
-            let mut row = row;
-            row.extend(higher);
-            self.rows.set(patch, row);
-        }
-    }
-
     /// Patches that fill too much of what another sees.
-    fn too_big(&self, upper: &[Vec<(u32, f32)>]) -> Vec<u32> {
-        let area = |patch: usize| self.mesh.elements()[self.patches[patch] as usize].area;
+    fn too_big(&self, rows: &[Row]) -> Vec<u32> {
         let mut big = vec![false; self.patches.len()];
-        for (i, row) in upper.iter().enumerate() {
+        for (row, &patch) in rows.iter().zip(&self.patches) {
+            let area = self.mesh.elements()[patch as usize].area;
             for &(j, exchange) in row {
-                let j = j as usize;
-                big[j] |= f64::from(exchange) > self.settings.largest_factor * area(i);
-                big[i] |= f64::from(exchange) > self.settings.largest_factor * area(j);
+                big[j as usize] |= f64::from(exchange) > self.settings.largest_factor * area;
             }
         }
         self.patches.iter().zip(big).filter(|(_, big)| *big).map(|(&patch, _)| patch).collect()
@@ -149,7 +160,7 @@ impl Book<'_> {
     }
 
     /// Exchange of an element with a patch, if there is any.
-    fn pair(&self, from: &Side, patch: u32) -> Option<(u32, f32)> {
+    fn pair(&self, from: &Side, patch: u32, rays: u32) -> Option<(u32, f32)> {
         let to = Side::of(&self.mesh, self.patches[patch as usize]);
         if from.hides(&to) || to.hides(from) {
             return None;
@@ -158,10 +169,23 @@ impl Book<'_> {
         if open <= 0.0 {
             return None;
         }
-        let FactorMethod::RayCast { rays } = self.settings.factors;
         let seen = open * visible_share(from, &to, &self.occluders, rays);
         (seen > 0.0).then_some((patch, seen as f32))
     }
+}
+
+/// Rows of all from rows of those with higher numbers.
+fn both_halves(upper: Vec<Row>) -> Vec<Row> {
+    let mut rows: Vec<Row> = vec![Row::new(); upper.len()];
+    for (i, row) in (0..).zip(&upper) {
+        for &(j, exchange) in row {
+            rows[j as usize].push((i, exchange));
+        }
+    }
+    for (row, higher) in rows.iter_mut().zip(upper) {
+        row.extend(higher);
+    }
+    rows
 }
 
 /// One of two that exchange light.

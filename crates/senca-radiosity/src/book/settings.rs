@@ -16,6 +16,18 @@ pub enum FactorMethod {
         /// Lines of sight for a pair, 1 to 4096; the first quarter decides where it agrees.
         rays: u32,
     },
+    /// Half cubes on the parts of a patch or element.
+    Hemicube {
+        /// Cells along an edge, an even number from 2 to 4096.
+        resolution: u32,
+        /// Parts each way of what looks, 1 to 64.
+        parts: u32,
+    },
+}
+
+impl FactorMethod {
+    /// The method of the book's section 4.2: half cubes of 50 cells, on 2 x 2 parts.
+    pub const HEMICUBE: Self = Self::Hemicube { resolution: 50, parts: 2 };
 }
 
 impl Default for FactorMethod {
@@ -76,11 +88,20 @@ impl BookSettings {
     /// [`RadiosityError::Setting`].
     pub fn check(&self) -> Result<(), RadiosityError> {
         self.direct.check()?;
-        let FactorMethod::RayCast { rays } = self.factors;
+        let (name, value, fits, expected) = match self.factors {
+            FactorMethod::RayCast { rays } => {
+                ("rays of a form factor", rays, (1..=4096).contains(&rays), "from 1 to 4096")
+            }
+            FactorMethod::Hemicube { parts, .. } => {
+                ("parts of what looks", parts, (1..=64).contains(&parts), "from 1 to 64")
+            }
+        };
+        if !fits {
+            return Err(RadiosityError::Setting { name, value: value.into(), expected });
+        }
         let reflectance = f64::from(self.largest_reflectance);
         let above_0 = |value: f64| value > 0.0 && value.is_finite();
         for (name, value, fits, expected) in [
-            ("rays of a form factor", rays.into(), (1..=4096).contains(&rays), "from 1 to 4096"),
             (
                 "largest factor",
                 self.largest_factor,

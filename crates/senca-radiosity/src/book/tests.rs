@@ -109,6 +109,20 @@ fn a_closed_box_is_a_furnace() {
 }
 
 #[test]
+fn half_cubes_agree_with_rays() {
+    let settings = |factors| BookSettings { rounds: 1, factors, ..BookSettings::default() };
+    let by = |factors| solve_faces(&furnished(0.6, 0.0, 5.0), 0.7, &settings(factors));
+    let (rays, cubes) = (by(FactorMethod::RayCast { rays: 64 }), by(FactorMethod::HEMICUBE));
+    assert!(cubes.solution.report.energy_error < 1e-3);
+    let polygons = rays.solution.mesh.polygons().len();
+    let [a, b] = [&rays, &cubes].map(|solved| &solved.solution.incident[..polygons]);
+    let mean = a.iter().map(|h| h.r).sum::<f32>() / polygons as f32;
+    for (i, (a, b)) in a.iter().zip(b).enumerate() {
+        assert!((a.r - b.r).abs() < 0.05 * mean.max(a.r), "polygon {i}: {} {}", a.r, b.r);
+    }
+}
+
+#[test]
 fn the_inside_of_a_ball_is_a_furnace() {
     let mut scene = Scene::of_shape("ball", Shape::Sphere { radius: 1.0 });
     let reflection = Reflection::Phong(Phong { diffuse: grey(0.8), ..Phong::default() });

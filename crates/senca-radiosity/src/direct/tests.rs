@@ -100,6 +100,21 @@ fn an_area_light_is_the_form_factor_it_has() {
 }
 
 #[test]
+fn plain_area_lights_can_be_emitters_instead() {
+    let plain = lit_by(LightKind::Area { size: [2.0, 0.5] }, Attenuation::InverseSquare { range: None });
+    let mut light = light_of(&plain);
+    let areas = light.take_plain_areas();
+    assert!(light.is_empty());
+    let (shape, shows) = &areas[0];
+    let (normal, area) = shape.normal_and_area();
+    assert!(normal.distance(DVec3::NEG_Y) < 1e-12 && (area - 1.0).abs() < 1e-12);
+    assert!((shows.r - std::f32::consts::PI).abs() < 1e-6);
+    let even = lit_by(LightKind::Area { size: [2.0, 0.5] }, Attenuation::None);
+    let mut light = light_of(&even);
+    assert!(light.take_plain_areas().is_empty() && !light.is_empty());
+}
+
+#[test]
 fn an_open_sky_shows_itself_and_a_wall_takes_half() {
     let white = LinearRgb::new(1.0, 0.5, 2.0);
     let scene = Scene { background: Background::Color(white), ..Scene::default() };

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::Rgb64;
+use crate::form_factor::FormFactors;
 
 /// Form factors by row: row i holds F_i->j, the share of light from patch i that lands on patch j.
 /// Pairs that do not see each other are left out.
@@ -51,6 +52,13 @@ impl FactorMatrix {
     #[must_use]
     pub fn from_dense<R: AsRef<[f64]>>(rows: &[R]) -> Self {
         Self::from_rows(rows.iter().map(|row| (0..).zip(row.as_ref().iter().copied()).collect()))
+    }
+
+    /// From a matrix that was computed by one of the methods.
+    #[must_use]
+    pub fn from_form_factors(factors: &FormFactors) -> Self {
+        let rows: Vec<&[f64]> = (0..factors.size()).map(|i| factors.row(i)).collect();
+        Self::from_dense(&rows)
     }
 
     /// Number of rows, which is that of patches.

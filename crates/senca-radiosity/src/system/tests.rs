@@ -248,15 +248,6 @@ fn two_levels_without_more_equations() {
     assert!((mean(&full) - 1.301_222_493_9).abs() < 6e-11);
 }
 
-#[test]
-fn cost_of_two_levels() {
-    let flat = Cost::flat(100, 16);
-    assert_eq!((flat.equations, flat.factors), (1600, 2_560_000));
-    let two = Cost::two_level(100, 16);
-    assert_eq!((two.equations, two.factors, two.partial_factors), (100, 10_000, 160_000));
-    assert_eq!(two.steps_for_parts, 160_000);
-}
-
 proptest! {
     /// Open scenes: factors that obey reciprocity and sum to less than 1 lose nothing but what they say.
     #[test]

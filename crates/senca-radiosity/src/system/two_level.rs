@@ -3,7 +3,7 @@
 //! Patches are divided into parts. The system of the patches has factors that are the means of the
 //! parts' ([`condensed`]); once it is solved, the equations of the parts are solved with all patches
 //! known ([`parts`]). That is exact where the parts of a patch are as bright as each other, or seen
-//! alike; else it is near.
+//! alike; else it is near. What it saves: [`crate::form_factor::Cost`].
 
 use super::{FactorMatrix, Rgb64, System};
 use crate::RadiosityError;
@@ -66,38 +66,4 @@ pub fn parts(parts: &System, patch_of: &[usize], patches: &[Rgb64]) -> Vec<Rgb64
         }
     }
     found
-}
-
-/// What it costs to compute with patches of which each has the same number of parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cost {
-    /// Equations that are solved together.
-    pub equations: u64,
-    /// Form factors of the system.
-    pub factors: u64,
-    /// Form factors that those are the means of.
-    pub partial_factors: u64,
-    /// Products for the parts after the system is solved.
-    pub steps_for_parts: u64,
-}
-
-impl Cost {
-    /// An equation for each part.
-    #[must_use]
-    pub const fn flat(patches: u64, parts: u64) -> Self {
-        let n = patches * parts;
-        Self { equations: n, factors: n * n, partial_factors: 0, steps_for_parts: 0 }
-    }
-
-    /// An equation for each patch, and then the parts.
-    #[must_use]
-    pub const fn two_level(patches: u64, parts: u64) -> Self {
-        let factors = patches * patches;
-        Self {
-            equations: patches,
-            factors,
-            partial_factors: factors * parts,
-            steps_for_parts: factors * parts,
-        }
-    }
 }
