@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use senca_math::glam::{DMat3, DVec3};
 use senca_math::{Control, LinearRgb};
-use senca_radiosity::{ElementMesh, HierarchyLamps, HierarchySettings, solve_hierarchy};
+use senca_radiosity::{DirectLight, ElementMesh, HierarchySettings, solve_hierarchy};
 
 type Corners = Vec<DVec3>;
 
@@ -158,7 +158,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let start = Instant::now();
             let rounds = &mut |_: &senca_radiosity::Solution| {};
             let solution =
-                solve_hierarchy(mesh, &HierarchyLamps::default(), &settings, &Control::default(), rounds)?;
+                solve_hierarchy(mesh, &DirectLight::default(), &settings, &Control::default(), rounds)?;
             least = least.min(start.elapsed().as_secs_f64());
             report = Some(solution.report);
         }

@@ -73,8 +73,8 @@ fn setting(name: &'static str, value: f64, fits: bool, expected: &'static str) -
     if fits { Ok(()) } else { Err(RadiosityError::Setting { name, value, expected }) }
 }
 
-/// The lamps and the sky of a scene.
-#[derive(Clone, Debug)]
+/// The lamps and the sky of a scene. The default is dark.
+#[derive(Clone, Debug, Default)]
 pub struct DirectLight {
     lamps: Vec<ShadingLight>,
     rectangles: Vec<Rectangle>,

@@ -32,5 +32,5 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use settings::{HierarchyLamps, HierarchySettings, LampLight};
+pub use settings::HierarchySettings;
 pub use solver::solve_hierarchy;

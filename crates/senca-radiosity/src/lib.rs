@@ -10,6 +10,7 @@ pub mod book;
 mod direct;
 mod error;
 pub mod form_factor;
+mod gather;
 mod hierarchy;
 mod mesh;
 mod nodes;
@@ -21,7 +22,8 @@ pub mod system;
 
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
-pub use hierarchy::{HierarchyLamps, HierarchySettings, LampLight, solve_hierarchy};
+pub use gather::{DirectGather, GatherSettings, IndirectField};
+pub use hierarchy::{HierarchySettings, solve_hierarchy};
 pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
 pub use nodes::{Extrapolation, NodeTransfer, NodeValues};
 pub use occluders::{Occluders, PolygonHit};

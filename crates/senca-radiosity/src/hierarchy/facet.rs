@@ -65,7 +65,7 @@ impl Facet {
     }
 
     /// Places that stand for all of it, with equal weights.
-    pub(super) fn places(&self) -> SmallVec<[DVec3; 4]> {
+    fn places(&self) -> SmallVec<[DVec3; 4]> {
         match *self.shape.corners() {
             [a, b, c] => {
                 let at = |p: DVec3, q: DVec3, r: DVec3| (4.0 * p + q + r) / 6.0;

@@ -1,9 +1,6 @@
 //! What a solution is asked for.
 
-use senca_math::LinearRgb;
-use senca_math::glam::DVec3;
-
-use crate::{PatchPolygon, RadiosityError};
+use crate::RadiosityError;
 
 /// How exact a hierarchical solution is to be, and what it may use up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,24 +65,5 @@ impl HierarchySettings {
             return refuse("iterations", 0.0, "at least 1");
         }
         Ok(())
-    }
-}
-
-/// Light of a lamp without extent at a place with this unit normal: what a white matt surface there
-/// shows.
-pub type LampLight<'a> = &'a (dyn Fn(DVec3, DVec3) -> LinearRgb + Sync);
-
-/// Lights of the scene that are not in the mesh.
-#[derive(Clone, Default)]
-pub struct HierarchyLamps<'a> {
-    /// Matt rectangles that shine to their front, with what they show. They block nothing.
-    pub rectangles: Vec<(PatchPolygon, LinearRgb)>,
-    /// All other lamps together, with what stands before them.
-    pub others: Option<LampLight<'a>>,
-}
-
-impl std::fmt::Debug for HierarchyLamps<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("HierarchyLamps").field("rectangles", &self.rectangles).finish_non_exhaustive()
     }
 }

@@ -1,6 +1,5 @@
 //! The rounds of a solution.
 
-use rayon::prelude::*;
 use senca_math::glam::Vec4;
 use senca_math::{Control, LinearRgb};
 
@@ -12,10 +11,10 @@ use super::lost::estimate_lost;
 use super::node::{MAX_NODES, Node};
 use super::oracle::{Oracle, Verdict};
 use super::refine::{Limits, apply, judge_all};
-use super::settings::{HierarchyLamps, HierarchySettings};
+use super::settings::HierarchySettings;
 use super::sight::Sight;
 use super::state::{State, brightness, rgb, rgb1};
-use crate::{ElementMesh, Occluders, RadiosityError, Solution, SolveReport};
+use crate::{DirectLight, DirectSample, ElementMesh, Occluders, RadiosityError, Solution, SolveReport};
 
 /// Smallest edge of elements, as a share of the diagonal of the scene.
 const SMALLEST_EDGE: f64 = 1.0 / 400.0;
@@ -37,13 +36,13 @@ const AT_ONCE: usize = 1 << 14;
 /// [`RadiosityError::TooManyElements`].
 pub fn solve_hierarchy(
     mesh: ElementMesh,
-    lamps: &HierarchyLamps<'_>,
+    light: &DirectLight,
     settings: &HierarchySettings,
     control: &Control<'_>,
     on_round: &mut dyn FnMut(&Solution),
 ) -> Result<Solution, RadiosityError> {
     settings.check()?;
-    let mut solver = Solver::new(mesh, lamps, settings, control)?;
+    let mut solver = Solver::new(mesh, light, settings, control)?;
     solver.light_by_lamps();
     for round in 0..settings.rounds {
         if solver.power <= 0.0 || !solver.run_round(round) {
@@ -62,12 +61,13 @@ struct Solver<'a> {
     mesh: ElementMesh,
     clusters: Clusters,
     occluders: Occluders,
-    lamps: &'a HierarchyLamps<'a>,
+    /// Lamps that are matt rectangles, and the rest of them.
     facets: Vec<Facet>,
+    others: DirectLight,
     settings: &'a HierarchySettings,
     control: &'a Control<'a>,
     state: State,
-    /// Of each element, light of the lamps without extent; NaN where it is not known.
+    /// Of each element, light of the other lamps.
     point_lit: Vec<Vec4>,
     links: Vec<Link>,
     network: Network,
@@ -80,7 +80,7 @@ struct Solver<'a> {
 impl<'a> Solver<'a> {
     fn new(
         mesh: ElementMesh,
-        lamps: &'a HierarchyLamps<'a>,
+        light: &DirectLight,
         settings: &'a HierarchySettings,
         control: &'a Control<'a>,
     ) -> Result<Self, RadiosityError> {
@@ -90,9 +90,10 @@ impl<'a> Solver<'a> {
         let occluders = Occluders::new(&mesh)?;
         let clusters = Clusters::new(&mesh);
         let mut state = State::new(&mesh, &clusters);
-        state.lamp_radiance = lamps.rectangles.iter().map(|&(_, shows)| rgb1(shows, 0.0)).collect();
-        let facets: Vec<Facet> =
-            lamps.rectangles.iter().map(|&(shape, _)| Facet::of_polygon(shape)).collect();
+        let mut others = light.clone();
+        let rectangles = others.take_plain_areas();
+        state.lamp_radiance = rectangles.iter().map(|&(_, shows)| rgb1(shows, 0.0)).collect();
+        let facets: Vec<Facet> = rectangles.iter().map(|&(shape, _)| Facet::of_polygon(shape)).collect();
         let edge = settings.smallest_edge.unwrap_or(SMALLEST_EDGE * mesh.bounds().diagonal());
         let mut links = Vec::new();
         if clusters.len() > 0 {
@@ -110,8 +111,8 @@ impl<'a> Solver<'a> {
             mesh,
             clusters,
             occluders,
-            lamps,
             facets,
+            others,
             settings,
             control,
             state,
@@ -141,11 +142,11 @@ impl<'a> Solver<'a> {
         Parts { mesh: &self.mesh, clusters: &self.clusters, lamps: &self.facets }
     }
 
-    /// Light of the lamps without extent, with elements divided where it changes.
+    /// Light of the other lamps, with elements divided where it changes.
     fn light_by_lamps(&mut self) {
         let mut first = 0;
         let mut threshold = f64::INFINITY;
-        while self.lamps.others.is_some() && first < self.mesh.elements().len() {
+        while !self.others.is_empty() && first < self.mesh.elements().len() {
             if self.control.is_cancelled() {
                 break;
             }
@@ -171,21 +172,16 @@ impl<'a> Solver<'a> {
         self.state.follow_mesh(&self.mesh);
     }
 
-    /// Light of the lamps without extent on elements from `first` on, and how much it varies.
+    /// Light of the other lamps on elements from `first` on, and how much it varies. Once the caller
+    /// wants to stop, what was not looked at stays dark.
     fn lit_by_lamps(&self, first: usize) -> Vec<(Vec4, f32)> {
-        let Some(light) = self.lamps.others else {
-            return vec![(Vec4::ZERO, 0.0); self.mesh.elements().len() - first];
+        let wanted: Vec<u32> = (first as u32..self.mesh.elements().len() as u32).collect();
+        let lit = match self.others.is_empty() {
+            true => Err(RadiosityError::Cancelled),
+            false => self.others.on_elements(&self.occluders, &self.mesh, &wanted, self.control),
         };
-        let on = |element: usize| {
-            let facet = Facet::of(&self.mesh, element as u32);
-            let at = facet.places().into_iter().map(|place| rgb1(light(place, facet.normal), 0.0));
-            let (mut sum, mut least, mut most, mut count) = (Vec4::ZERO, Vec4::INFINITY, Vec4::ZERO, 0.0);
-            for value in at {
-                (sum, least, most, count) = (sum + value, least.min(value), most.max(value), count + 1.0);
-            }
-            (sum / count, brightness(most - least))
-        };
-        (first..self.mesh.elements().len()).into_par_iter().with_min_len(16).map(on).collect()
+        let lit = lit.unwrap_or_else(|_| vec![DirectSample::default(); wanted.len()]);
+        lit.iter().map(|sample| (rgb1(sample.mean, 0.0), sample.spread())).collect()
     }
 
     /// Refines and exchanges. False when the caller wants to stop before there is anything new.
@@ -273,7 +269,8 @@ impl<'a> Solver<'a> {
                 self.state.radiosity = before;
                 return;
             }
-            if self.report.residual <= tolerance {
+            // The brightest may be far brighter than what it lights, so power has to agree too.
+            if self.report.residual <= tolerance && self.energy_error() <= tolerance {
                 self.report.converged = true;
                 return;
             }

@@ -2,7 +2,7 @@ use senca_math::glam::DVec3;
 use senca_math::{Control, LinearRgb};
 
 use super::*;
-use crate::{ElementMesh, Solution};
+use crate::{DirectLight, ElementMesh, Solution};
 
 type Quad = [DVec3; 4];
 
@@ -33,7 +33,7 @@ fn mesh_of(quads: &[(Quad, f32, f32)]) -> ElementMesh {
 }
 
 fn solve(mesh: ElementMesh, settings: &HierarchySettings) -> Solution {
-    solve_hierarchy(mesh, &HierarchyLamps::default(), settings, &Control::default(), &mut |_| {})
+    solve_hierarchy(mesh, &DirectLight::default(), settings, &Control::default(), &mut |_| {})
         .expect("a solution")
 }
 
