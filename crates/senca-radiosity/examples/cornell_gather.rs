@@ -74,23 +74,25 @@ impl Picture<'_> {
             }
             match largest {
                 0.0 => first[i].color,
-                step if step > 2.0 => self.mean(x, y, 24),
-                step if step > 0.1 => self.mean(x, y, 4),
-                _ => self.mean(x, y, 2),
+                step if step > 2.0 => self.mean(x, y, 512),
+                step if step > 0.1 => self.mean(x, y, 16),
+                _ => self.mean(x, y, 4),
             }
         };
         (0..n * n).into_par_iter().map(refined).collect()
     }
 
-    fn mean(&self, x: usize, y: usize, side: usize) -> [f32; 3] {
+    /// The mean of samples at the points of Hammersley 1960.
+    fn mean(&self, x: usize, y: usize, samples: usize) -> [f32; 3] {
         let mut sum = [0.0f64; 3];
-        for i in 0..side * side {
-            let [u, v] = [i % side, i / side].map(|k| (k as f64 + 0.5) / side as f64);
+        for i in 0..samples {
+            let u = (i as f64 + 0.5) / samples as f64;
+            let v = f64::from((i as u32).reverse_bits()) / 4_294_967_296.0 + 0.5 / samples as f64;
             let key = ((y * self.size as usize + x) * 1024 + i) as u64 | 1 << 40;
             let shown = self.at(x as f64 + u, y as f64 + v, key);
             (0..3).for_each(|c| sum[c] += f64::from(shown.color[c]));
         }
-        sum.map(|s| (s / (side * side) as f64) as f32)
+        sum.map(|s| (s / samples as f64) as f32)
     }
 }
 

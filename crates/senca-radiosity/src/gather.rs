@@ -202,6 +202,61 @@ impl<'a> IndirectField<'a> {
     }
 }
 
+/// Light that surfaces reflect to a place, by rays spread evenly over the hemisphere as the cosine
+/// weighs them: what a white matt surface with this unit normal would show of it. Emission does not
+/// count. `key` turns the directions.
+#[must_use]
+pub fn gather_reflected(
+    solution: &Solution,
+    occluders: &Occluders,
+    place: DVec3,
+    normal: DVec3,
+    rays: u32,
+    key: u64,
+) -> LinearRgb {
+    let mesh = &solution.mesh;
+    let frame = Frame::of(normal);
+    let shift = [unit_hash(key), unit_hash(!key)];
+    let mut sum = [0.0f64; 3];
+    for ray in 0..rays {
+        let u = (f64::from(ray) + shift[0]) / f64::from(rays);
+        let v = (f64::from(ray) * 0.618_033_988_749_895 + shift[1]).fract();
+        let direction = frame.cosine_weighted(u, v);
+        let Some(hit) = occluders.closest(place, direction).filter(|hit| hit.front) else {
+            continue;
+        };
+        let leaf = leaf_at(mesh, hit.polygon, place + hit.t * direction);
+        let light = mesh.surface(leaf).reflectance * solution.incident[leaf as usize];
+        for (sum, channel) in sum.iter_mut().zip(light.to_array()) {
+            *sum += f64::from(channel);
+        }
+    }
+    LinearRgb::from_array(sum.map(|channel| (channel / f64::from(rays.max(1))) as f32))
+}
+
+/// Directions around a normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    axes: [DVec3; 3],
+}
+
+impl Frame {
+    /// Around a unit vector.
+    pub(crate) fn of(normal: DVec3) -> Self {
+        let [x, y] = [DVec3::X, DVec3::Y].map(|axis| axis.cross(normal));
+        let x_axis = if x.length_squared() > y.length_squared() { x } else { y }.normalize_or_zero();
+        Self { axes: [x_axis, normal.cross(x_axis), normal] }
+    }
+
+    /// The direction of a point of the unit square, by a map that makes of an even spread one that the
+    /// cosine weighs (Malley's).
+    pub(crate) fn cosine_weighted(&self, u: f64, v: f64) -> DVec3 {
+        let (radius, angle) = (u.sqrt(), std::f64::consts::TAU * v);
+        let [x, y, z] = self.axes;
+        radius * (angle.cos() * x + angle.sin() * y) + (1.0 - u).max(0.0).sqrt() * z
+    }
+}
+
 /// The leaf of a polygon that holds a place, or comes nearest to it.
 fn leaf_at(mesh: &ElementMesh, polygon: u32, place: DVec3) -> u32 {
     let mut element = polygon;

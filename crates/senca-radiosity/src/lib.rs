@@ -22,7 +22,7 @@ pub mod system;
 
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
-pub use gather::{DirectGather, GatherSettings, IndirectField};
+pub use gather::{DirectGather, GatherSettings, IndirectField, gather_reflected};
 pub use hierarchy::{HierarchySettings, solve_hierarchy};
 pub use mesh::{Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
 pub use nodes::{Extrapolation, NodeTransfer, NodeValues};

@@ -1,12 +1,11 @@
 //! Light that leaves the scene, or ends on backs.
 
-use std::f64::consts::TAU;
-
 use rayon::prelude::*;
-use senca_math::glam::{DVec2, DVec3};
+use senca_math::glam::DVec2;
 
 use super::sight::mix;
 use super::state::State;
+use crate::gather::Frame;
 use crate::{ElementMesh, Occluders};
 
 /// Rays of the smallest element, and how many all of the scene has in addition.
@@ -46,7 +45,7 @@ pub(super) fn estimate_lost(state: &mut State, mesh: &ElementMesh, occluders: &O
 
 fn lost_share(mesh: &ElementMesh, occluders: &Occluders, element: u32, rays: u32) -> f32 {
     let (shape, normal) = (mesh.shape(element), mesh.normal(element));
-    let [x_axis, y_axis] = across(normal);
+    let frame = Frame::of(normal);
     let (first, second) = (mix(u64::from(element) + 1), mix(u64::from(element) ^ 0x9e37_79b9_7f4a_7c15));
     let unit = |bits: u64| f64::from(bits as u32) / 4_294_967_296.0;
     let shifts = [first, second].map(|bits| DVec2::new(unit(bits), unit(bits >> 32)));
@@ -55,17 +54,8 @@ fn lost_share(mesh: &ElementMesh, occluders: &Occluders, element: u32, rays: u32
         // The radical inverse would be as good; the golden ratio keeps places and directions apart.
         let round = (shifts[1] + DVec2::new(0.618_033_988_749_895, 0.414_213_562_373_095) * f64::from(*ray))
             .fract_gl();
-        let (radius, angle) = (round.x.sqrt(), TAU * round.y);
-        let up = (1.0 - round.x).max(0.0).sqrt();
-        let direction = radius * (angle.cos() * x_axis + angle.sin() * y_axis) + up * normal;
+        let direction = frame.cosine_weighted(round.x, round.y);
         !occluders.closest(shape.place(on.x, on.y), direction).is_some_and(|hit| hit.front)
     };
     (1..=rays).filter(is_lost).count() as f32 / rays as f32
-}
-
-/// Two unit vectors at right angles to a third.
-fn across(normal: DVec3) -> [DVec3; 2] {
-    let [x, y] = [DVec3::X, DVec3::Y].map(|axis| axis.cross(normal));
-    let x_axis = if x.length_squared() > y.length_squared() { x } else { y }.normalize_or_zero();
-    [x_axis, normal.cross(x_axis)]
 }

@@ -45,6 +45,9 @@ const STRONG: f64 = 10.0;
 /// Where all rays agree, what is still uncertain is this share of a ray.
 const UNSEEN: f64 = 0.25;
 
+/// Where light is blocked in part, the source is divided if it is this many times larger.
+const RELUCTANCE: f64 = 4.0;
+
 /// Clusters nearer than this many sums of their radii may overlap.
 const NEAR: f64 = 1.0;
 
@@ -105,11 +108,10 @@ impl Oracle<'_> {
         if receiver.area * (by_receiver + by_source) <= threshold {
             return Verdict::Keep;
         }
-        let direct = threshold < self.threshold;
-        let reluctance = if direct { 4.0 } else { 1.0 };
-        let shadow = bright * factor * unsure > bright * spread;
-        let source_first =
-            by_source > by_receiver || (shadow && source.radius > reluctance * receiver.radius);
+        // Parts of a source would share the error out to links that look good enough one by one.
+        let shadow = factor * unsure > spread;
+        let larger = source.radius > RELUCTANCE * receiver.radius;
+        let source_first = by_source > by_receiver || (shadow && larger);
         let verdict = self.split(link, [receiver.area, source.area], source_first);
         if verdict == Verdict::Keep && unsure > 0.02 && link.rays < RAYS[3] {
             self.cast(link, RAYS[3]);

@@ -74,6 +74,8 @@ struct Solver<'a> {
     /// Emitted and cast, largest channel.
     power: f64,
     smallest_area: f64,
+    /// What light from surfaces was brought to its power by.
+    scale: Vec4,
     report: SolveReport,
 }
 
@@ -105,6 +107,7 @@ impl<'a> Solver<'a> {
         let mut solver = Self {
             smallest_area: edge * edge,
             power: 0.0,
+            scale: Vec4::ONE,
             point_lit: Vec::new(),
             network: Network::default(),
             report: SolveReport::default(),
@@ -260,8 +263,8 @@ impl<'a> Solver<'a> {
             }
             let before = self.state.radiosity.clone();
             let incident = self.arriving();
-            let scale = self.balance(&incident);
-            self.state.incident = incident.into_iter().map(|light| light * scale).collect();
+            self.scale = self.balance(&incident);
+            self.state.incident = incident.into_iter().map(|light| light * self.scale).collect();
             self.state.pull(&self.mesh);
             self.report.iterations += 1;
             self.report.residual = change(&before, &self.state.radiosity);
@@ -346,7 +349,7 @@ impl<'a> Solver<'a> {
         let direct = self.arriving();
         self.state.radiosity = lit;
         let lamps = self.state.lamp_light.iter();
-        direct.iter().zip(lamps).map(|(&light, &lamps)| rgb(light + lamps)).collect()
+        direct.iter().zip(lamps).map(|(&light, &lamps)| rgb(light * self.scale + lamps)).collect()
     }
 
     /// Power that is neither absorbed nor lost, as a share of what is given.
