@@ -151,7 +151,8 @@ fn perspective_planes(
     let (low, high) = depth_range(world_from_camera, bounds).unwrap_or((0.1, 100.0));
     // Nothing lies before the eye: any planes do.
     let high = if high > 0.0 { high } else { 1.0 };
-    let margin = DEPTH_MARGIN * (high - low.max(0.0)).max(1e-6 * high);
+    // Depths crowd towards the far plane: what lies flat before it must differ from it in f32.
+    let margin = (DEPTH_MARGIN * (high - low.max(0.0))).max(1e-3 * high);
     let far = far.unwrap_or_else(|| (high + margin).max(near.map_or(0.0, |near| near * (1.0 + 1e-3))));
     let chosen = (low - margin).max(NEAR_SHARE * far);
     // A given far plane may lie before the scene.

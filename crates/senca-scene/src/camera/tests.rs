@@ -39,6 +39,16 @@ fn open_planes_are_put_around_the_scene() {
 }
 
 #[test]
+fn what_lies_flat_across_the_line_of_sight_is_before_the_far_plane() {
+    let wall = Aabb { min: DVec3::new(-2.0, -1.0, -5.4), max: DVec3::new(2.0, 1.0, -5.4) };
+    for near in [None, Some(0.1), Some(1e-3)] {
+        let view = perspective(None, near, None).view(&DMat4::IDENTITY, 1.0, &wall).unwrap();
+        let depth = seen(&view, 0.0, 0.0, -5.4).z as f32;
+        assert!(depth < 1.0, "{near:?}: {depth}");
+    }
+}
+
+#[test]
 fn a_camera_with_an_aspect_keeps_its_window_in_sight() {
     let bounds = unit_box_at(-5.0);
     let corner = |picture: f64| {
