@@ -33,6 +33,9 @@ const LINES: usize = 200;
 /// content does not tell, and `None` where neither does.
 #[must_use]
 pub fn detect(bytes: &[u8], extension: Option<&str>) -> Option<Format> {
+    if bytes.trim_ascii().is_empty() {
+        return None;
+    }
     if gltf::is_gltf(bytes) {
         return Some(Format::Gltf);
     }
@@ -193,6 +196,14 @@ mod tests {
         let mut binary = vec![b's'; 84];
         binary[80..].fill(0);
         assert_eq!(detect(&binary, None), Some(Format::Stl));
+    }
+
+    #[test]
+    fn nothing_is_of_no_format_whatever_it_is_called() {
+        for extension in ["toml", "gltf", "glb", "obj", "stl", "ply", "dat", "png"] {
+            assert_eq!(detect(b"", Some(extension)), None);
+            assert_eq!(detect(b" \n\r\n\t", Some(extension)), None);
+        }
     }
 
     #[test]

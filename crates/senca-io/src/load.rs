@@ -92,7 +92,7 @@ fn load_model(name: &str, bytes: &[u8], files: &dyn Files) -> Result<Scene, Read
         Some(Format::ClassicScene) => classic::read_scene(name, bytes, files),
         Some(Format::Picture) => not_read("is a picture, not a scene"),
         Some(Format::SceneFile) => not_read("is a scene file where a model is wanted"),
-        None if bytes.is_empty() => not_read("is empty"),
+        None if bytes.trim_ascii().is_empty() => not_read("is empty"),
         None => not_read("is of no known format"),
     }
 }
