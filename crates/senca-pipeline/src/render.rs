@@ -519,9 +519,10 @@ impl<'s> Paper<'s> {
     pub(crate) fn new(scene: &'s Scene, settings: &Settings, view: &View, size: [u32; 2]) -> Self {
         let blank =
             if settings.shading.is_lines() { Background::Color(LinearRgb::WHITE) } else { Background::None };
-        let background = match scene.background {
-            Background::None => settings.background.unwrap_or(blank),
-            background => background,
+        let background = match (settings.background, scene.background) {
+            (Some(wish), _) => wish,
+            (None, Background::None) => blank,
+            (None, of_scene) => of_scene,
         };
         let environment = Environment::of_background(scene, background);
         Self { background, environment, view: *view, size }

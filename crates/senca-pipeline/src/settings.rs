@@ -33,8 +33,8 @@ pub struct Settings {
     pub two_pass: bool,
     /// Part of the picture to draw; the rest of the image is left as it is. Default all.
     pub crop: Option<Crop>,
-    /// What is seen where nothing is, when the scene does not say. Default nothing, that is,
-    /// transparent black; white in the line modes.
+    /// What is seen where nothing is, in place of what the scene says; it gives no light. Default: the
+    /// scene's, and where it says nothing transparent black, or white in the line modes.
     pub background: Option<Background>,
     /// Lines of the line modes, and of meshes made of lines and points.
     pub wire: WireSettings,

@@ -573,7 +573,7 @@ fn silhouettes_are_round_at_any_size() {
 fn gradient_runs_from_the_top_row_to_the_bottom_row() {
     let background = Background::Gradient { bottom: LinearRgb::BLACK, top: LinearRgb::WHITE };
     let scene = Scene { background, ..Scene::default() };
-    let image = draw(&scene, &eye(), Shading::Material, 5);
+    let image = draw_with(&scene, &eye(), &Settings::default(), 5, 5);
     let column: Vec<f32> = (0..5).map(|y| image.pixel(2, y)[0]).collect();
     assert_eq!(column, [1.0, 0.75, 0.5, 0.25, 0.0]);
 }
@@ -690,7 +690,7 @@ fn surroundings_are_seen_along_the_projectors() {
     let background = Background::Environment { image: ImageId(0), strength: 0.5, rotation: 0.3 };
     let images = vec![TextureImage { name: String::new(), data }];
     let mut scene = Scene { background, images, ..Scene::default() };
-    let image = draw(&scene, &eye(), Shading::Material, 9);
+    let image = draw_with(&scene, &eye(), &Settings::default(), 9, 9);
     let device = senca_math::DeviceMap::to_pixels(9, 9).expect("a size");
     for (x, y) in [(0, 0), (4, 4), (8, 2)] {
         let ray = eye().ray_through(&device, senca_math::pixel_center(x, y)).expect("a ray");

@@ -23,13 +23,13 @@ pub fn render_svg(
     control: &Control<'_>,
 ) -> Result<(String, [u32; 2], Report), Error> {
     let start = Instant::now();
-    let mut prepared = prepare(scene, settings)?;
+    let prepared = prepare(scene, settings)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
     let mut wish = settings.clone();
     if !wish.drawing.shading.is_lines() {
         wish.drawing.shading = Shading::Wire;
     }
-    let drawing = drawing_settings(&mut prepared, &wish);
+    let drawing = drawing_settings(&prepared, &wish);
     let [width, height] = prepared.size;
     let find = if drawing.shading == Shading::HiddenLine { hidden_line_segments } else { wire_segments };
     let segments = find(&prepared.scene, &prepared.view, &drawing, width, height)?;

@@ -6,11 +6,12 @@ use std::borrow::Cow;
 use senca_math::glam::DVec3;
 use senca_math::{View, world_from_look_at};
 use senca_scene::{
-    AnimationId, Background, Camera, DEFAULT_YFOV, PlacedCamera, Projection, Scene, frame_bounds,
+    AnimationId, Background, Camera, DEFAULT_YFOV, MaterialId, PlacedCamera, Projection, Scene, Shape,
+    frame_bounds,
 };
 
 use crate::traced::{CameraOptics, optics_of};
-use crate::{Error, LookAt, Moment, Settings, Viewpoint};
+use crate::{Error, LookAt, Method, Moment, Settings, Viewpoint};
 
 /// The box that pictures without a size fit into, in pixels.
 const DEFAULT_SIZE: [u32; 2] = [1024, 768];
@@ -45,10 +46,42 @@ pub fn prepare<'s>(scene: Cow<'s, Scene>, settings: &Settings) -> Result<Prepare
         (None, _, yfov) => camera_of_caller(&scene, &LookAt::default(), yfov, aspect)?,
     };
     let view = placed.camera.view(&placed.world_from_camera, aspect, &scene.bounds())?;
-    if !scene.is_lit() {
+    if !is_lit(&scene, settings.method) {
         scene.to_mut().light_by_default(&placed.world_from_camera);
     }
     Ok(Prepared { scene, view, size, camera: optics_of(&placed.camera) })
+}
+
+/// Whether the scene has light for the method. Paths also find what comes from glowing surfaces and from
+/// any background, by which nothing else is lit.
+fn is_lit(scene: &Scene, method: Method) -> bool {
+    let spreads = method == Method::Path;
+    scene.is_lit() || spreads && (shines(scene.background) || glows(scene))
+}
+
+/// Whether the background is brighter than black.
+fn shines(background: Background) -> bool {
+    match background {
+        Background::Color(color) => color.max_component() > 0.0,
+        Background::Gradient { bottom, top } => bottom.max_component().max(top.max_component()) > 0.0,
+        Background::None | Background::Environment { .. } => false,
+    }
+}
+
+/// Whether a surface that is placed in the world gives off light.
+fn glows(scene: &Scene) -> bool {
+    let glows =
+        |id: MaterialId| scene.materials.get(id.index()).is_some_and(|m| m.emission.max_component() > 0.0);
+    scene.instances().into_iter().any(|instance| {
+        let geometry = &scene.geometries[instance.geometry.index()];
+        let whole = scene.nodes[instance.node.index()].material.or(geometry.material);
+        let of_surfaces = match &geometry.shape {
+            Shape::Mesh(mesh) => mesh.surfaces.as_slice(),
+            _ => &[],
+        };
+        // What is more, a surface of a mesh may name its own.
+        whole.is_some_and(glows) || of_surfaces.iter().filter_map(|s| s.material).any(glows)
+    })
 }
 
 /// The scene at the moment asked for, or in the pose of its file; meshes bent as their nodes say.

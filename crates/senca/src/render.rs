@@ -65,31 +65,25 @@ pub fn render_with(
         return Ok((traced.image, traced.report));
     }
     let start = Instant::now();
-    let mut prepared = prepare(scene, settings)?;
+    let prepared = prepare(scene, settings)?;
     let prepare_seconds = start.elapsed().as_secs_f64();
-    let drawing = drawing_settings(&mut prepared, settings);
+    let drawing = drawing_settings(&prepared, settings);
     let (image, report) =
         senca_pipeline::render_part(&prepared.scene, &prepared.view, &drawing, prepared.size, control)?;
     Ok((image, Report { prepare_seconds, drawing: report, tracing: None }))
 }
 
 /// The pipeline's settings, with the crop and a background: the caller's, white paper for line
-/// drawings, the scene's, or a quiet grey, in this order.
-pub(crate) fn drawing_settings(prepared: &mut Prepared<'_>, settings: &Settings) -> senca_pipeline::Settings {
-    let mut drawing = senca_pipeline::Settings { crop: settings.crop, ..settings.drawing };
-    let of_scene = prepared.scene.background;
-    let lines = drawing.shading.is_lines();
-    let background = match drawing.background {
-        Some(wish) => wish,
-        None if lines || of_scene == Background::None => default_background(lines),
-        None => of_scene,
+/// drawings, the scene's, or a quiet grey, in this order. What is seen changes, not the light that comes
+/// from the scene's own background.
+pub(crate) fn drawing_settings(prepared: &Prepared<'_>, settings: &Settings) -> senca_pipeline::Settings {
+    let lines = settings.drawing.shading.is_lines();
+    let background = match (settings.drawing.background, prepared.scene.background) {
+        (Some(wish), _) => wish,
+        (None, of_scene) if lines || of_scene == Background::None => default_background(lines),
+        (None, of_scene) => of_scene,
     };
-    // The pipeline lets the scene speak first.
-    if of_scene != Background::None && of_scene != background {
-        prepared.scene.to_mut().background = Background::None;
-    }
-    drawing.background = Some(background);
-    drawing
+    senca_pipeline::Settings { crop: settings.crop, background: Some(background), ..settings.drawing }
 }
 
 #[cfg(test)]
@@ -122,6 +116,46 @@ mod tests {
         wish.drawing.background = None;
         wish.drawing.shading = Shading::Wire;
         assert_eq!(corner(&wish), [1.0; 4], "lines are drawn on paper");
+    }
+
+    #[test]
+    fn another_background_leaves_the_light_of_the_scenes() {
+        let sky = senca_scene::TextureImage {
+            name: String::new(),
+            data: senca_scene::ImageData::RgbaF32 {
+                width: 2,
+                height: 1,
+                texels: vec![[0.5, 0.5, 0.5, 1.0]; 2],
+            },
+        };
+        let background =
+            Background::Environment { image: senca_scene::ImageId(0), strength: 1.0, rotation: 0.0 };
+        let scene = Scene { images: vec![sky], background, ..ball() };
+        for method in [Method::Raster, Method::Trace] {
+            let wish = |background| {
+                let mut wish = Settings { method, ..settings(33, 33) };
+                wish.drawing.background = background;
+                render(&scene, &wish).expect("a picture").0
+            };
+            let (plain, red) = (wish(None), wish(Some(Background::Color(RED))));
+            assert!(plain.pixel(16, 16)[0] > 0.1, "{method:?}");
+            assert_eq!(plain.pixel(16, 16), red.pixel(16, 16), "{method:?}");
+            assert_eq!(red.pixel(0, 0), [1.0, 0.0, 0.0, 1.0], "{method:?}");
+        }
+    }
+
+    #[test]
+    fn paths_take_their_light_from_what_glows() {
+        let mut scene = ball();
+        let glow = senca_scene::Material { emission: LinearRgb::new(0.0, 2.0, 0.0), ..Default::default() };
+        scene.geometries[0].material = Some(scene.add_material(glow));
+        let mut wish = Settings { method: Method::Path, ..settings(9, 9) };
+        wish.drawing.background = Some(Background::Color(LinearRgb::BLACK));
+        let (image, _) = render(&scene, &wish).expect("a picture");
+        assert_eq!(image.pixel(4, 4), [0.0, 2.0, 0.0, 1.0], "no lamp adds to it");
+        wish.method = Method::Trace;
+        let (image, _) = render(&scene, &wish).expect("a picture");
+        assert!(image.pixel(4, 4)[0] > 0.1, "rays that find no glow need lamps");
     }
 
     #[test]
