@@ -92,9 +92,11 @@ pub fn solve(
     if mesh_settings.patch_size.is_none() {
         mesh_settings.patch_size = Some(settings::default_patch_size(scene));
     }
-    let mesh = ElementMesh::of_scene(scene, &mesh_settings)?;
+    let (mesh, mut warnings) = ElementMesh::of_scene_with_warnings(scene, &mesh_settings)?;
     let light = DirectLight::of_scene(scene, &settings.direct)?;
-    solve_mesh(mesh, &light, settings, control, |_| ())
+    let mut solved = solve_mesh(mesh, &light, settings, control, |_| ())?;
+    warnings.append(&mut solved.warnings);
+    Ok(Solved { warnings, ..solved })
 }
 
 /// Computes the light on `mesh`, whose leaves are the patches, lit by what the mesh gives off and by

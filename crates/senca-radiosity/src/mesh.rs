@@ -9,7 +9,11 @@
 
 mod build;
 mod divide;
+mod inside;
+mod paint;
 mod restore;
+#[cfg(test)]
+mod scene_tests;
 #[cfg(test)]
 mod tests;
 

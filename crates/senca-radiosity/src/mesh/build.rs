@@ -1,29 +1,30 @@
 //! From a scene to polygons.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
-use senca_math::glam::{DMat3, DMat4, DVec3};
+use senca_math::glam::{DMat3, DMat4, DVec3, Vec3};
 use senca_math::polygon::triangulate_in_space;
 use senca_math::{Aabb, LinearRgb};
 use senca_scene::{
-    AlphaMode, Instance, Material, Mesh, Reflection, Scene, Shape, TessellationSettings, Tolerance,
-    is_flat_quad, split_quad, tessellate,
+    AlphaMode, Instance, Mesh, Scene, Shape, TessellationSettings, Tolerance, Warning, is_flat_quad,
+    split_quad, tessellate,
 };
 use smallvec::SmallVec;
 
+use super::inside::{self, Body};
+use super::paint::Paint;
 use super::{Element, ElementMesh, NONE, Polygon, RadiantSurface};
 use crate::RadiosityError;
 
 /// Normals of corners at one place that differ by less than this belong to one vertex; its cosine.
 const SMOOTH_COS: f64 = 0.999;
 
-/// Share of the light that a dielectric sends back at its surface, which a matt base does not see.
-const DIELECTRIC_MIRROR: f32 = 0.04;
-
 /// Which sides of surfaces take part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sides {
-    /// The front, and the back of materials that show it.
+    /// The front, and the back of materials that show it; but not the insides of closed bodies in which
+    /// nothing shines or looks.
     #[default]
     ByMaterial,
     /// The front alone.
@@ -54,22 +55,48 @@ impl Default for MeshSettings {
 
 impl ElementMesh {
     /// The polygons of `scene`, which is in its pose (see `Scene::at_time`) and valid, divided to the
-    /// size that the settings ask for. Polygons without area are left out.
+    /// size that the settings ask for.
+    ///
+    /// Left out are polygons without area or with corners that are not finite, those that coincide with
+    /// one before and face its way, and the insides of closed bodies in which nothing shines or looks;
+    /// endless planes end beyond the scene. Meshes need not be manifold.
     ///
     /// # Errors
     /// [`RadiosityError::Shape`], [`RadiosityError::Setting`], [`RadiosityError::TooManyElements`].
     pub fn of_scene(scene: &Scene, settings: &MeshSettings) -> Result<Self, RadiosityError> {
+        Self::of_scene_with_warnings(scene, settings).map(|(mesh, _)| mesh)
+    }
+
+    /// [`ElementMesh::of_scene`], and what was left out because something is wrong with it.
+    ///
+    /// # Errors
+    /// As [`ElementMesh::of_scene`].
+    pub fn of_scene_with_warnings(
+        scene: &Scene,
+        settings: &MeshSettings,
+    ) -> Result<(Self, Vec<Warning>), RadiosityError> {
         positive("patch size", settings.patch_size)?;
         positive("tolerance", settings.tolerance)?;
         let mut builder = Builder::new(scene, settings);
-        for (number, instance) in (0..).zip(scene.instances()) {
-            builder.add_instance(number, &instance)?;
+        let instances = scene.instances();
+        let mut meshes = Vec::with_capacity(instances.len());
+        for (number, instance) in (0..).zip(&instances) {
+            let shape = builder.mesh_of(instance)?;
+            builder.add_side(number, instance, &shape, false);
+            meshes.push(shape);
         }
+        let empty = builder.empty_bodies(&instances, &meshes);
+        for (number, (instance, shape)) in (0..).zip(instances.iter().zip(&meshes)) {
+            if empty.binary_search(&number).is_err() {
+                builder.add_side(number, instance, shape, true);
+            }
+        }
+        let warnings = builder.warnings();
         let mut mesh = builder.mesh;
         if let Some(size) = settings.patch_size {
             mesh.divide_to_size(size, settings.max_elements)?;
         }
-        Ok(mesh)
+        Ok((mesh, warnings))
     }
 
     /// A mesh of single polygons, each a surface of its own with this reflectance and emission: for
@@ -100,16 +127,17 @@ impl ElementMesh {
     }
 
     /// Adds a triangle or quadrilateral as a root, unless it has no area. Only before any division.
-    pub(super) fn push_polygon(&mut self, vertices: &[u32], surface: u32) {
+    /// Tells whether it was added.
+    pub(super) fn push_polygon(&mut self, vertices: &[u32], surface: u32) -> bool {
         let corners: SmallVec<[DVec3; 4]> = vertices.iter().map(|&v| self.positions[v as usize]).collect();
         let normal = senca_math::newell_normal(&corners);
         if !(normal.length() > 0.0 && normal.is_finite()) {
-            return;
+            return false;
         }
         let vertices = match *vertices {
             [a, b, c] => [a, b, c, NONE],
             [a, b, c, d] => [a, b, c, d],
-            _ => return,
+            _ => return false,
         };
         let number = self.polygons.len() as u32;
         self.polygons.push(Polygon { surface, normal: normal.normalize() });
@@ -123,6 +151,7 @@ impl ElementMesh {
             area: 0.0,
             center: DVec3::ZERO,
         });
+        true
     }
 }
 
@@ -132,8 +161,16 @@ struct Builder<'s> {
     settings: &'s MeshSettings,
     /// World units.
     tolerance: f64,
-    plane_extent: f64,
+    /// Of the scene.
+    size: f64,
+    middle: DVec3,
+    paint: Paint<'s>,
     mesh: ElementMesh,
+    /// Where polygons are, by the bits of their corners in ascending order, with their normals.
+    taken: HashMap<SmallVec<[[u64; 3]; 4]>, SmallVec<[DVec3; 2]>>,
+    /// Polygons that were left out: without area, and where one was already.
+    flat: usize,
+    doubled: usize,
     /// Vertices of the current side of an instance, by the bits of their place.
     vertices: HashMap<[u64; 3], SmallVec<[u32; 2]>>,
 }
@@ -145,33 +182,70 @@ impl<'s> Builder<'s> {
             scene,
             settings,
             tolerance: settings.tolerance.unwrap_or(1e-3 * size),
-            plane_extent: 2.0 * size,
+            size,
+            middle: scene.bounds().center(),
+            paint: Paint::new(scene),
             mesh: ElementMesh::default(),
+            taken: HashMap::new(),
+            flat: 0,
+            doubled: 0,
             vertices: HashMap::new(),
         }
     }
 
-    fn add_instance(&mut self, number: u32, instance: &Instance) -> Result<(), RadiosityError> {
+    /// The mesh of what an instance places.
+    fn mesh_of(&self, instance: &Instance) -> Result<Cow<'s, Mesh>, RadiosityError> {
         let geometry = &self.scene.geometries[instance.geometry.index()];
         let settings = self.tessellation(&instance.world_from_object);
-        let mesh = tessellate(&geometry.shape, &settings).map_err(|source| RadiosityError::Shape {
+        tessellate(&geometry.shape, &settings).map_err(|source| RadiosityError::Shape {
             geometry: instance.geometry.0,
             name: geometry.name.clone(),
             source,
-        })?;
-        let materials = self.materials(instance, &mesh);
-        for back in [false, true] {
-            self.vertices.clear();
-            let surfaces = self.add_surfaces(number, &materials, back);
-            let placed = Placed::new(&mesh, &instance.world_from_object, back);
-            for (face, corners) in mesh.faces.iter().enumerate() {
-                let surface = surfaces.get(mesh.faces.surface_of(face) as usize).copied().flatten();
-                if let Some(surface) = surface {
-                    self.add_face(&placed, corners, surface);
-                }
+        })
+    }
+
+    fn add_side(&mut self, number: u32, instance: &Instance, mesh: &Mesh, back: bool) {
+        self.vertices.clear();
+        let materials = self.materials(instance, mesh);
+        let surfaces = self.add_surfaces(number, &materials, back, mesh);
+        let placed = Placed::new(mesh, &instance.world_from_object, back);
+        for (face, corners) in mesh.faces.iter().enumerate() {
+            let surface = surfaces.get(mesh.faces.surface_of(face) as usize).copied().flatten();
+            if let Some(surface) = surface {
+                self.add_face(&placed, corners, surface);
             }
         }
-        Ok(())
+    }
+
+    /// Numbers of instances whose inside nobody sees, ascending.
+    fn empty_bodies(&self, instances: &[Instance], meshes: &[Cow<'_, Mesh>]) -> Vec<u32> {
+        if self.settings.sides != Sides::ByMaterial {
+            return Vec::new();
+        }
+        let mut bodies = Vec::new();
+        for (number, (instance, mesh)) in (0..).zip(instances.iter().zip(meshes)) {
+            let materials = self.materials(instance, mesh);
+            let hides = |&material: &u32| {
+                let plain = self.paint.material(material);
+                let opaque = plain.alpha_mode == AlphaMode::Opaque && !plain.is_transmissive();
+                opaque && !plain.unlit && plain.emission == LinearRgb::BLACK
+            };
+            let has_back = materials.iter().any(|&material| self.has_back(material));
+            if has_back && materials.iter().all(hides) && inside::is_closed_body(mesh) {
+                let world = |p: Vec3| instance.world_from_object.transform_point3(p.as_dvec3());
+                bodies.push(Body { instance: number, bounds: inside::bounds_of(mesh, world) });
+            }
+        }
+        inside::empty_bodies(&self.mesh, &bodies, &inside::watchers(self.scene))
+    }
+
+    fn warnings(&self) -> Vec<Warning> {
+        let text = |count: usize, what: &str| {
+            (count > 0).then(|| Warning(format!("{count} polygons {what} are left out of the mesh")))
+        };
+        let flat = text(self.flat, "without area, or with corners that are not finite,");
+        let doubled = text(self.doubled, "that coincide with others");
+        flat.into_iter().chain(doubled).collect()
     }
 
     /// The tolerance is meant in the world, shapes are in object space.
@@ -181,10 +255,18 @@ impl<'s> Builder<'s> {
         let scale = if scale > 0.0 && scale.is_finite() { scale } else { 1.0 };
         TessellationSettings {
             tolerance: Tolerance::World(self.tolerance / scale),
-            plane_extent: self.plane_extent / scale,
+            plane_extent: self.plane_extent(world_from_object) / scale,
             polygons: true,
             ..TessellationSettings::default()
         }
+    }
+
+    /// Edge of an endless plane, which has its middle at the origin of its frame: as far beyond the
+    /// scene as the scene is large.
+    fn plane_extent(&self, world_from_object: &DMat4) -> f64 {
+        let origin = world_from_object.transform_point3(DVec3::ZERO);
+        let away = origin.distance(self.middle);
+        2.0 * (self.size + if away.is_finite() { away } else { 0.0 })
     }
 
     /// Material of each surface of the mesh; the scene's count stands for the default material.
@@ -203,35 +285,44 @@ impl<'s> Builder<'s> {
         own.into_iter().map(of).collect()
     }
 
+    fn has_back(&self, material: u32) -> bool {
+        match self.settings.sides {
+            Sides::ByMaterial => self.paint.material(material).double_sided,
+            Sides::Front => false,
+            Sides::Both => true,
+        }
+    }
+
     /// One side of each surface, or `None` where that side takes no part.
-    fn add_surfaces(&mut self, instance: u32, materials: &[u32], back: bool) -> Vec<Option<u32>> {
-        let default = Material { double_sided: true, ..Material::default() };
-        let mut add = |&number: &u32| {
-            let material = self.scene.materials.get(number as usize).unwrap_or(&default);
-            let both = match self.settings.sides {
-                Sides::ByMaterial => material.double_sided,
-                Sides::Front => false,
-                Sides::Both => true,
-            };
-            if back && !both {
+    fn add_surfaces(
+        &mut self,
+        instance: u32,
+        materials: &[u32],
+        back: bool,
+        mesh: &Mesh,
+    ) -> Vec<Option<SideOf>> {
+        let mut add = |&material: &u32| {
+            if back && !self.has_back(material) {
                 return None;
             }
-            let (reflectance, emission) = (matt_reflectance(material), material.emission);
-            let transmittance = transmittance(material);
-            self.mesh.surfaces.push(RadiantSurface {
+            let blank = RadiantSurface {
                 instance,
-                material: number,
+                material,
                 back,
-                reflectance,
-                emission,
-                transmittance,
-            });
-            Some(self.mesh.surfaces.len() as u32 - 1)
+                reflectance: LinearRgb::BLACK,
+                emission: LinearRgb::BLACK,
+                transmittance: LinearRgb::BLACK,
+            };
+            if self.paint.varies(material, mesh) {
+                return Some(SideOf::Varying(blank));
+            }
+            self.mesh.surfaces.push(self.paint.plain(blank));
+            Some(SideOf::Plain(self.mesh.surfaces.len() as u32 - 1))
         };
         materials.iter().map(&mut add).collect()
     }
 
-    fn add_face(&mut self, placed: &Placed<'_>, corners: &[u32], surface: u32) {
+    fn add_face(&mut self, placed: &Placed<'_>, corners: &[u32], surface: SideOf) {
         let places = |corners: &[u32]| -> SmallVec<[DVec3; 4]> {
             corners.iter().map(|&corner| placed.position(corner)).collect()
         };
@@ -255,13 +346,52 @@ impl<'s> Builder<'s> {
         }
     }
 
-    fn add_part(&mut self, placed: &Placed<'_>, corners: &[u32], surface: u32) {
+    fn add_part(&mut self, placed: &Placed<'_>, corners: &[u32], side: SideOf) {
+        if self.is_doubled(placed, corners) {
+            self.doubled += 1;
+            return;
+        }
+        let surface = match side {
+            SideOf::Plain(surface) => surface,
+            SideOf::Varying(blank) => self.mean_surface(placed, corners, blank),
+        };
         let mut vertices: SmallVec<[u32; 4]> =
             corners.iter().map(|&corner| self.vertex(placed, corner)).collect();
         if placed.reversed {
             vertices.reverse();
         }
-        self.mesh.push_polygon(&vertices, surface);
+        if !self.mesh.push_polygon(&vertices, surface) {
+            self.flat += 1;
+        }
+    }
+
+    /// The surface of a polygon of its own, or the last one where that is the same.
+    fn mean_surface(&mut self, placed: &Placed<'_>, corners: &[u32], blank: RadiantSurface) -> u32 {
+        let mean = self.paint.mean(blank, placed.mesh, corners);
+        let surfaces = &mut self.mesh.surfaces;
+        if surfaces.last() != Some(&mean) {
+            surfaces.push(mean);
+        }
+        surfaces.len() as u32 - 1
+    }
+
+    /// Whether there is a polygon with the same corners and the same front.
+    fn is_doubled(&mut self, placed: &Placed<'_>, corners: &[u32]) -> bool {
+        let places: SmallVec<[DVec3; 4]> = corners.iter().map(|&corner| placed.position(corner)).collect();
+        let turn = if placed.reversed { -1.0 } else { 1.0 };
+        let normal = senca_math::newell_normal(&places) * turn;
+        if normal == DVec3::ZERO || !normal.is_finite() {
+            return false;
+        }
+        let mut key: SmallVec<[[u64; 3]; 4]> =
+            places.iter().map(|&p| (p + DVec3::ZERO).to_array().map(f64::to_bits)).collect();
+        key.sort_unstable();
+        let here = self.taken.entry(key).or_default();
+        let doubled = here.iter().any(|other| other.dot(normal) > 0.0);
+        if !doubled {
+            here.push(normal);
+        }
+        doubled
     }
 
     /// The vertex for a corner: one that is there already at this place and has nearly this normal.
@@ -277,6 +407,15 @@ impl<'s> Builder<'s> {
         here.push(vertex);
         vertex
     }
+}
+
+/// One side of a surface.
+#[derive(Clone, Copy)]
+enum SideOf {
+    /// The same everywhere: its number.
+    Plain(u32),
+    /// Different from polygon to polygon; without its light.
+    Varying(RadiantSurface),
 }
 
 /// One side of a mesh in its place.
@@ -315,35 +454,6 @@ impl<'m> Placed<'m> {
     fn normal(&self, corner: u32) -> DVec3 {
         let normal = self.mesh.vertices.normal[corner as usize].as_dvec3();
         (self.world_from_object_normals * normal).normalize_or_zero() * self.side
-    }
-}
-
-/// The share of light that a material scatters evenly.
-fn matt_reflectance(material: &Material) -> LinearRgb {
-    if material.unlit {
-        return LinearRgb::BLACK;
-    }
-    match &material.reflection {
-        Reflection::Phong(phong) => phong.diffuse,
-        Reflection::MetallicRoughness(rough) => {
-            rough.base_color * ((1.0 - rough.metallic) * (1.0 - DIELECTRIC_MIRROR))
-        }
-    }
-}
-
-/// The share of light that passes through a surface, as it is seen straight on.
-fn transmittance(material: &Material) -> LinearRgb {
-    if material.is_transmissive() {
-        return material.transmission.map(|t| t.clamp(0.0, 1.0));
-    }
-    let alpha = match &material.reflection {
-        Reflection::Phong(phong) => phong.alpha,
-        Reflection::MetallicRoughness(rough) => rough.alpha,
-    };
-    match material.alpha_mode {
-        AlphaMode::Opaque => LinearRgb::BLACK,
-        AlphaMode::Blend => LinearRgb::splat((1.0 - alpha).clamp(0.0, 1.0)),
-        AlphaMode::Mask { cutoff } => LinearRgb::splat(if alpha < cutoff { 1.0 } else { 0.0 }),
     }
 }
 
