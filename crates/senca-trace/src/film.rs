@@ -16,13 +16,13 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use senca_math::{Control, Image};
 
-use crate::antialias::{Antialiasing, Places};
+use crate::antialias::{Antialiasing, Places, SquareCache};
 use crate::{Pattern, Sampler, TraceCounts, TraceError};
 
 pub use saved::{Fingerprint, SavedFilmError};
 
 /// Side of a tile in pixels.
-const TILE: u32 = 16;
+const TILE: u32 = 32;
 
 /// Where a sample lies.
 #[derive(Clone, Copy, Debug)]
@@ -290,10 +290,13 @@ impl Film {
         let area = self.settings.area;
         let seed = self.settings.seed;
         let sums = &self.sums;
-        let tile_of = |work: &mut I::Work, tile: &Area| {
+        let tile_of = |Bench { work, batch, .. }: &mut Bench<I>, tile: &Area| {
             let before = I::counts(work);
-            let mut exposures: Vec<Exposure> = tile.places().map(|(x, y)| sums[area.index(x, y)]).collect();
-            let mut batch = Batch::default();
+            let mut exposures = Vec::with_capacity(tile.pixels());
+            for y in tile.y..tile.y + tile.height {
+                exposures.extend_from_slice(&sums[area.index(tile.x, y)..][..tile.width as usize]);
+            }
+            batch.clear();
             for (pixel, (x, y)) in tile.places().enumerate() {
                 for sample in range.clone() {
                     let mut sampler = Sampler::new(Pattern::Sobol, seed, x, y, sample);
@@ -316,8 +319,9 @@ impl Film {
         let tiles = area.tiles();
         let done = in_tiles::<I, _>(&tiles, progress, tile_of)?;
         for (tile, (exposures, counts)) in tiles.iter().zip(done) {
-            for ((x, y), exposure) in tile.places().zip(exposures) {
-                self.sums[area.index(x, y)] = exposure;
+            let width = tile.width as usize;
+            for (y, row) in (tile.y..).zip(exposures.chunks(width)) {
+                self.sums[area.index(tile.x, y)..][..width].copy_from_slice(row);
             }
             report.counts += counts;
         }
@@ -354,6 +358,20 @@ impl Film {
     }
 }
 
+/// What a thread keeps from tile to tile.
+struct Bench<I: Integrator> {
+    work: I::Work,
+    batch: Batch,
+    /// Of adaptive supersampling.
+    caches: Vec<SquareCache>,
+}
+
+impl<I: Integrator> Default for Bench<I> {
+    fn default() -> Self {
+        Self { work: I::Work::default(), batch: Batch::default(), caches: Vec::new() }
+    }
+}
+
 /// Samples that are taken together.
 #[derive(Debug, Default)]
 struct Batch {
@@ -367,6 +385,12 @@ impl Batch {
     /// Samples at most.
     const MOST: usize = 1024;
 
+    fn clear(&mut self) {
+        self.places.clear();
+        self.pixels.clear();
+    }
+
+    #[inline]
     fn push(&mut self, place: SamplePlace, pixel: usize, weight: f32) {
         self.places.push(place);
         self.pixels.push((pixel, weight));
@@ -393,8 +417,7 @@ impl Batch {
         for (&(pixel, weight), &color) in self.pixels.iter().zip(&self.colors) {
             exposures[pixel].add(color, weight);
         }
-        self.places.clear();
-        self.pixels.clear();
+        self.clear();
         Some(())
     }
 }
@@ -430,13 +453,13 @@ impl Progress<'_> {
 fn in_tiles<I: Integrator, T: Send>(
     tiles: &[Area],
     progress: &Progress<'_>,
-    work: impl Fn(&mut I::Work, &Area) -> Option<T> + Sync,
+    work: impl Fn(&mut Bench<I>, &Area) -> Option<T> + Sync,
 ) -> Result<Vec<T>, TraceError> {
     let done = Mutex::new(0usize);
     let results: Option<Vec<T>> = tiles
         .par_iter()
         .with_max_len(1)
-        .map_init(I::Work::default, |state, tile| {
+        .map_init(Bench::<I>::default, |state, tile| {
             let result = work(state, tile)?;
             let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
             *done += 1;

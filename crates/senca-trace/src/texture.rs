@@ -7,11 +7,11 @@
 use std::sync::Arc;
 
 use senca_math::color::linear_from_srgb;
-use senca_math::glam::{DVec2, Mat3};
+use senca_math::glam::{DMat3, DVec2, Mat3};
 use senca_scene::{ColorSpace, Filter, ImageData, Scene, TextureRef, Wrap};
 
 /// Coordinates, in texels, are held within this of 0, so that texel numbers fit 32 bits.
-const FARTHEST_TEXEL: f32 = 1e9;
+const FARTHEST_TEXEL: f64 = 1e9;
 
 /// What the bytes of 8-bit pictures mean.
 #[derive(Debug)]
@@ -37,7 +37,8 @@ pub(crate) struct BoundTexture<'s> {
     wrap: [Wrap; 2],
     nearest: bool,
     texcoord: usize,
-    uv_transform: Mat3,
+    /// `None` where it does nothing.
+    uv_transform: Option<DMat3>,
     /// The use's own factor: scale of a normal map, strength of an occlusion map.
     pub(crate) strength: f32,
 }
@@ -62,28 +63,31 @@ impl<'s> BoundTexture<'s> {
             wrap: [texture.wrap_u, texture.wrap_v],
             nearest: filter.unwrap_or(texture.filter) == Filter::Nearest,
             texcoord: usize::from(used.texcoord == 1),
-            uv_transform: used.uv_transform,
+            uv_transform: (used.uv_transform != Mat3::IDENTITY).then(|| used.uv_transform.as_dmat3()),
             strength: used.strength,
         })
     }
 
     /// The texture where the surface has these coordinates of sets 0 and 1.
+    #[inline]
     pub(crate) fn sample(&self, texcoords: &[DVec2; 2]) -> [f32; 4] {
-        let uv = self.uv_transform.transform_point2(texcoords[self.texcoord].as_vec2());
+        let uv = texcoords[self.texcoord];
+        let uv = self.uv_transform.map_or(uv, |transform| transform.transform_point2(uv));
         let (width, height) = self.image.size();
         let (x, y) = (position(uv.x, width), position(uv.y, height));
         if self.nearest { self.texel(whole(x + 0.5), whole(y + 0.5)) } else { self.bilinear(x, y) }
     }
 
-    fn bilinear(&self, x: f32, y: f32) -> [f32; 4] {
+    fn bilinear(&self, x: f64, y: f64) -> [f32; 4] {
         let (i, j) = (whole(x), whole(y));
-        let (s, t) = (x - x.floor(), y - y.floor());
+        let (s, t) = ((x - i as f64) as f32, (y - j as f64) as f32);
         let upper = lerp(self.texel(i, j), self.texel(i + 1, j), s);
         let lower = lerp(self.texel(i, j + 1), self.texel(i + 1, j + 1), s);
         lerp(upper, lower, t)
     }
 
     /// The texel in column `x`, row `y`, which may lie outside the picture.
+    #[inline]
     fn texel(&self, x: i64, y: i64) -> [f32; 4] {
         let (width, height) = self.image.size();
         let (x, y) = (wrapped(self.wrap[0], x, width), wrapped(self.wrap[1], y, height));
@@ -99,19 +103,25 @@ impl<'s> BoundTexture<'s> {
 }
 
 /// Position among the texel centres, 0 at the first; NaN counts as 0.
-fn position(u: f32, n: u32) -> f32 {
-    let p = u * n as f32 - 0.5;
+#[inline]
+fn position(u: f64, n: u32) -> f64 {
+    let p = u * f64::from(n) - 0.5;
     if p.is_nan() { 0.0 } else { p.clamp(-FARTHEST_TEXEL, FARTHEST_TEXEL) }
 }
 
-fn whole(v: f32) -> i64 {
-    v.floor() as i64
+/// The largest whole number that is not above `v`, which is within [`FARTHEST_TEXEL`] of 0.
+#[inline]
+fn whole(v: f64) -> i64 {
+    let towards_zero = v as i64;
+    towards_zero - i64::from(towards_zero as f64 > v)
 }
 
 /// Texel `i` brought into `0..n`.
+#[inline]
 fn wrapped(wrap: Wrap, i: i64, n: u32) -> usize {
     let n = i64::from(n.max(1));
     (match wrap {
+        Wrap::Repeat if n & (n - 1) == 0 => i & (n - 1),
         Wrap::Repeat => i.rem_euclid(n),
         Wrap::Mirror => {
             let j = i.rem_euclid(2 * n);

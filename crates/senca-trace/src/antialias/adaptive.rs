@@ -53,9 +53,10 @@ impl AdaptiveSettings {
 type Rgba = [f32; 4];
 
 /// Colours known within one pixel, by their place on the grid of the last level.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SquareCache {
-    /// Pixel for which each entry holds, and the entry.
+    /// Pixel for which each entry holds, and the entry. Twice its number where the entry is known, one
+    /// less where it has been asked for.
     entries: Vec<(u64, Rgba)>,
     pixel: u64,
     side: usize,
@@ -70,14 +71,29 @@ impl SquareCache {
     }
 
     pub(crate) fn set(&mut self, x: u32, y: u32, color: Rgba) {
-        self.entries[y as usize * self.side + x as usize] = (self.pixel, color);
+        self.entries[y as usize * self.side + x as usize] = (2 * self.pixel, color);
+    }
+
+    /// The colour at a place; where it is not known, the place is put into `wanted` the first time.
+    fn known(&mut self, x: u32, y: u32, wanted: &mut Vec<[u32; 2]>) -> Option<Rgba> {
+        let (known, asked) = (2 * self.pixel, 2 * self.pixel - 1);
+        let entry = &mut self.entries[y as usize * self.side + x as usize];
+        if entry.0 == known {
+            return Some(entry.1);
+        }
+        if entry.0 != asked {
+            entry.0 = asked;
+            wanted.push([x, y]);
+        }
+        None
     }
 
     /// The colour at a place, asked from `sample` the first time.
+    #[cfg(test)]
     fn get(&mut self, x: u32, y: u32, sample: &mut impl FnMut(u32, u32) -> Rgba) -> Rgba {
         let entry = &mut self.entries[y as usize * self.side + x as usize];
-        if entry.0 != self.pixel {
-            *entry = (self.pixel, sample(x, y));
+        if entry.0 != 2 * self.pixel {
+            *entry = (2 * self.pixel, sample(x, y));
         }
         entry.1
     }
@@ -91,9 +107,10 @@ struct Square {
     side: u32,
 }
 
-/// Colour of a pixel. `sample` gives the colour at a place on the grid of the last level, 0 to
+/// Colour of a pixel, as the text has it: the plain twin of [`pixel_so_far`]. `sample` gives the colour at a place on the grid of the last level, 0 to
 /// [`AdaptiveSettings::cells`] both ways; it is not asked for places that `cache` knows.
-pub(crate) fn pixel(
+#[cfg(test)]
+fn pixel(
     settings: &AdaptiveSettings,
     cache: &mut SquareCache,
     sample: &mut impl FnMut(u32, u32) -> Rgba,
@@ -103,6 +120,7 @@ pub(crate) fn pixel(
 }
 
 /// Mean colour of a square.
+#[cfg(test)]
 fn part(
     settings: &AdaptiveSettings,
     square: Square,
@@ -119,6 +137,39 @@ fn part(
     let quarters = [(x, y), (x + half, y), (x, y + half), (x + half, y + half)]
         .map(|(x, y)| part(settings, Square { x, y, side: half }, cache, sample));
     mean(&quarters)
+}
+
+/// Colour of a pixel for one who takes samples many at a time: `None` while places on the grid of the
+/// last level, 0 to [`AdaptiveSettings::cells`] both ways, are missing from `cache`. These are put into
+/// `wanted`, once each.
+pub(crate) fn pixel_so_far(
+    settings: &AdaptiveSettings,
+    cache: &mut SquareCache,
+    wanted: &mut Vec<[u32; 2]>,
+) -> Option<Rgba> {
+    part_so_far(settings, Square { x: 0, y: 0, side: settings.cells() }, cache, wanted)
+}
+
+fn part_so_far(
+    settings: &AdaptiveSettings,
+    square: Square,
+    cache: &mut SquareCache,
+    wanted: &mut Vec<[u32; 2]>,
+) -> Option<Rgba> {
+    let Square { x, y, side } = square;
+    let places = [(x, y), (x + side, y), (x, y + side), (x + side, y + side)];
+    let corners = all_known(places.map(|(x, y)| cache.known(x, y, wanted)))?;
+    if side == 1 || difference(&corners) < settings.threshold {
+        return Some(mean(&corners));
+    }
+    let half = side / 2;
+    let quarters = [(x, y), (x + half, y), (x, y + half), (x + half, y + half)]
+        .map(|(x, y)| part_so_far(settings, Square { x, y, side: half }, cache, wanted));
+    Some(mean(&all_known(quarters)?))
+}
+
+fn all_known([a, b, c, d]: [Option<Rgba>; 4]) -> Option<[Rgba; 4]> {
+    Some([a?, b?, c?, d?])
 }
 
 fn mean(colors: &[Rgba; 4]) -> Rgba {
@@ -165,6 +216,35 @@ mod tests {
             (6, 0.871_032_714_843_75, 282),
         ] {
             assert_eq!(sampled(0.5, level, edge), (value as f32, count), "level {level}");
+        }
+    }
+
+    #[test]
+    fn samples_taken_many_at_a_time_are_the_same() {
+        for (level, slope) in [(0, 0.3), (1, 0.7), (3, 1.1), (4, 0.2)] {
+            let settings = AdaptiveSettings { threshold: 0.05, max_level: level };
+            let cells = f64::from(settings.cells());
+            let seen = |x: u32, y: u32| {
+                let (x, y) = (f64::from(x) / cells, f64::from(y) / cells);
+                [if y < slope * x { 1.0 } else { (0.5 * x) as f32 }; 4]
+            };
+            let mut cache = SquareCache::default();
+            cache.begin(settings.cells());
+            let mut plain_count = 0;
+            let plain = pixel(&settings, &mut cache, &mut |x, y| {
+                plain_count += 1;
+                seen(x, y)
+            });
+            cache.begin(settings.cells());
+            let (mut wanted, mut count) = (Vec::new(), 0);
+            let found = loop {
+                if let Some(color) = pixel_so_far(&settings, &mut cache, &mut wanted) {
+                    break color;
+                }
+                count += wanted.len();
+                wanted.drain(..).for_each(|[x, y]| cache.set(x, y, seen(x, y)));
+            };
+            assert_eq!((found, count), (plain, plain_count), "level {level}");
         }
     }
 

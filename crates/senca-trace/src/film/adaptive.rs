@@ -2,9 +2,12 @@
 
 use senca_math::Control;
 
-use super::{Area, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, in_tiles};
-use crate::antialias::{AdaptiveSettings, Antialiasing, SquareCache, adaptive_pixel};
+use super::{Area, Bench, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, in_tiles};
+use crate::antialias::{AdaptiveSettings, Antialiasing, SquareCache, adaptive_pixel_so_far};
 use crate::{Pattern, Sampler, TraceError};
+
+/// Entries of caches that are kept at once.
+const CACHED: u32 = 1 << 17;
 
 /// Share of the progress that the corners of pixels are.
 const CORNER_SHARE: u32 = 1;
@@ -43,15 +46,14 @@ impl Film {
         let area = self.settings.area;
         let grid = Area { width: area.width + 1, height: area.height + 1, ..area };
         let tiles = grid.tiles();
-        let done = in_tiles::<I, _>(&tiles, progress, |work, tile| {
+        let done = in_tiles::<I, _>(&tiles, progress, |Bench { work, .. }, tile| {
             let before = I::counts(work);
-            let mut colors = Vec::with_capacity(tile.pixels());
-            for (x, y) in tile.places() {
-                if progress.control.is_cancelled() {
-                    return None;
-                }
-                colors.push(integrator.sample(&self.place([x, y], [0, 0], 1), work));
+            if progress.control.is_cancelled() {
+                return None;
             }
+            let places: Vec<_> = tile.places().map(|(x, y)| self.place([x, y], [0, 0], 1)).collect();
+            let mut colors = Vec::with_capacity(places.len());
+            integrator.sample_many(&places, work, &mut colors);
             Some((colors, I::counts(work).since(&before)))
         })?;
         let mut corners = vec![[0.0; 4]; grid.pixels()];
@@ -89,24 +91,23 @@ impl Film {
         let grid = Area { width: area.width + 1, height: area.height + 1, ..area };
         let cells = settings.cells();
         let tiles = area.tiles();
-        let done = in_tiles::<I, _>(&tiles, progress, |work, tile| {
+        let done = in_tiles::<I, _>(&tiles, progress, |Bench { work, caches, .. }, tile| {
             let before = I::counts(work);
-            let mut cache = SquareCache::default();
             let mut exposures = Vec::with_capacity(tile.pixels());
-            for (x, y) in tile.places() {
-                if progress.control.is_cancelled() {
-                    return None;
+            let pixels: Vec<[u32; 2]> = tile.places().map(|(x, y)| [x, y]).collect();
+            for pixels in pixels.chunks((CACHED / (cells + 1).pow(2)).max(1) as usize) {
+                caches.resize(pixels.len().max(caches.len()), SquareCache::default());
+                for (&[x, y], cache) in pixels.iter().zip(&mut *caches) {
+                    cache.begin(cells);
+                    for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                        cache.set(dx * cells, dy * cells, corners[grid.index(x + dx, y + dy)]);
+                    }
                 }
-                cache.begin(cells);
-                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    cache.set(dx * cells, dy * cells, corners[grid.index(x + dx, y + dy)]);
-                }
-                let mut count = 4;
-                let sum = adaptive_pixel(settings, &mut cache, &mut |u, v| {
-                    count += 1;
-                    integrator.sample(&self.place([x, y], [u, v], cells), work)
-                });
-                exposures.push(Exposure { sum, weight: 1.0, count });
+                let take = |places: &[SamplePlace], colors: &mut Vec<[f32; 4]>| {
+                    integrator.sample_many(places, work, colors);
+                    (!progress.control.is_cancelled()).then_some(())
+                };
+                exposures.extend(self.divided(settings, pixels, caches, take)?);
             }
             Some((exposures, I::counts(work).since(&before)))
         })?;
@@ -118,5 +119,42 @@ impl Film {
             report.counts += counts;
         }
         Ok(())
+    }
+
+    /// The colours of pixels whose corners are in `caches`. `take` takes samples, or nothing when the
+    /// caller asked to stop. In every round all squares are divided that can be.
+    fn divided(
+        &self,
+        settings: &AdaptiveSettings,
+        pixels: &[[u32; 2]],
+        caches: &mut [SquareCache],
+        mut take: impl FnMut(&[SamplePlace], &mut Vec<[f32; 4]>) -> Option<()>,
+    ) -> Option<Vec<Exposure>> {
+        let mut exposures = vec![Exposure { count: 4, ..Exposure::default() }; pixels.len()];
+        let mut open: Vec<usize> = (0..pixels.len()).collect();
+        let (mut wanted, mut owners) = (Vec::new(), Vec::new());
+        let (mut places, mut colors) = (Vec::new(), Vec::new());
+        loop {
+            open.retain(|&number| {
+                let found = adaptive_pixel_so_far(settings, &mut caches[number], &mut wanted);
+                for at in wanted.drain(..) {
+                    places.push(self.place(pixels[number], at, settings.cells()));
+                    owners.push((number, at));
+                }
+                let exposure = &mut exposures[number];
+                (exposure.sum, exposure.weight) = (found.unwrap_or_default(), 1.0);
+                found.is_none()
+            });
+            if open.is_empty() {
+                return Some(exposures);
+            }
+            colors.clear();
+            take(&places, &mut colors)?;
+            for ((number, [x, y]), &color) in owners.drain(..).zip(&colors) {
+                caches[number].set(x, y, color);
+                exposures[number].count += 1;
+            }
+            places.clear();
+        }
     }
 }

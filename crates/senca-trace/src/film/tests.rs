@@ -239,7 +239,7 @@ fn cancelling_keeps_finished_passes_and_progress_never_falls() {
         let mut watch = Watch { time_limit: Some(Duration::from_secs(999)), save: None };
         film.expose(&Stripes, &mut watch, &control).expect("a picture");
         let shares: Vec<f32> = std::mem::take(&mut *shares.lock().expect("done"));
-        assert!(shares.is_sorted() && shares.len() > 3, "{antialiasing:?} {shares:?}");
+        assert!(shares.is_sorted() && shares.len() > 1, "{antialiasing:?} {shares:?}");
         assert_eq!(shares.last(), Some(&1.0));
     }
 }

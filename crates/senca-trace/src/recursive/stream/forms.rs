@@ -9,7 +9,7 @@ use fearless_simd::{Simd, prelude::*};
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3};
 
-use super::lanes::{F, LANES, M, V, lanes_of, larger};
+use super::lanes::{F, LANES, M, V, bits_of, channels, lanes_of, larger};
 use super::rays::Packet;
 use crate::intersect::{FlatTriangle, Form};
 use crate::{Counters, Crossing, Hit, Object, Ray};
@@ -17,7 +17,10 @@ use crate::{Counters, Crossing, Hit, Object, Ray};
 /// The surfaces of a world.
 #[derive(Debug, Default)]
 pub(super) struct Forms {
+    /// At most 64 where packets are tested against all.
     balls: Vec<Ball>,
+    /// A bit for each of them.
+    opaque_balls: u64,
     sheets: Vec<Sheet>,
     others: Vec<Other>,
     /// By rank.
@@ -52,7 +55,6 @@ struct Ball {
     center: DVec3,
     radius_squared: f64,
     rank: f64,
-    opaque: bool,
 }
 
 /// A flat piece.
@@ -166,8 +168,8 @@ impl Forms {
             numbers,
             texture: [DVec2::ZERO; 3],
         });
-        let (radius_squared, opaque) = (radius * radius, object.opaque);
-        self.balls.push(Ball { center, radius_squared, rank, opaque });
+        self.opaque_balls |= u64::from(object.opaque) << (self.balls.len() % 64);
+        self.balls.push(Ball { center, radius_squared: radius * radius, rank });
     }
 
     /// The coordinates of an object, to be combined to those of a sheet.
@@ -273,12 +275,10 @@ impl Forms {
     ) -> Nearest<S> {
         let (o, d, t_min) = (rays.origin, rays.direction, rays.t_min);
         let mut best = Nearest { t: F::splat(simd, f64::INFINITY), rank: F::splat(simd, -1.0) };
-        for ball in &self.balls {
+        for ball in bits_of(self.balls_ahead(simd, o, d, live)) {
+            let ball = &self.balls[ball];
             let (middle, half_squared) = ball.chord(simd, o, d);
             let met = half_squared.simd_gt(F::splat(simd, 0.0));
-            if !met.any_true() {
-                continue;
-            }
             let half = half_squared.sqrt();
             let (enter, leave) = (middle - half, middle + half);
             let t = enter.simd_gt(t_min).select(enter, leave);
@@ -336,6 +336,21 @@ impl Forms {
         }
     }
 
+    /// A bit for each ball that the line of a live ray meets ahead of its origin. To look at all first
+    /// takes no branches, and the few that are left can be looked at closely.
+    #[inline(always)]
+    fn balls_ahead<S: Simd>(&self, simd: S, o: V<S>, d: V<S>, live: M<S>) -> u64 {
+        let zero = F::splat(simd, 0.0);
+        let mut ahead = 0;
+        for (number, ball) in self.balls.iter().enumerate() {
+            let (middle, half_squared) = ball.chord(simd, o, d);
+            let in_front = middle.simd_gt(zero) | (middle * middle).simd_lt(half_squared);
+            let met = live & in_front & half_squared.simd_gt(zero);
+            ahead |= u64::from(met.any_true()) << (number % 64);
+        }
+        ahead
+    }
+
     /// Which of the `live` rays meet something opaque before `t_max`.
     #[inline(always)]
     pub(super) fn occluded<S: Simd>(
@@ -351,13 +366,12 @@ impl Forms {
         let zero = F::splat(simd, 0.0);
         let mut clear = live;
         let mut tests = 0;
-        for ball in self.balls.iter().filter(|ball| ball.opaque) {
+        let ahead = self.balls_ahead(simd, o, d, live) & self.opaque_balls;
+        tests += self.balls.len() as u64;
+        for ball in bits_of(ahead) {
+            let ball = &self.balls[ball];
             let (middle, half_squared) = ball.chord(simd, o, d);
-            tests += 1;
-            let met = clear & half_squared.simd_gt(zero);
-            if !met.any_true() {
-                continue;
-            }
+            let met = half_squared.simd_gt(zero);
             let half = half_squared.sqrt();
             let (enter, leave) = (middle - half, middle + half);
             let within =
@@ -467,10 +481,7 @@ impl Sheet {
             Outline::Endless => t.simd_lt(F::splat(simd, f64::INFINITY)),
             Outline::Square(coordinates) => {
                 let p = o.add(d.times(t));
-                let [u, v] = [0, 1].map(
-                    #[inline(always)]
-                    |k: usize| coordinates[k].at(simd, p),
-                );
+                let (u, v) = (coordinates[0].at(simd, p), coordinates[1].at(simd, p));
                 u.simd_ge(zero) & u.simd_le(one) & v.simd_ge(zero) & v.simd_le(one)
             }
             Outline::Ring(coordinates, inner) => {
@@ -497,10 +508,7 @@ impl Coordinate {
 #[inline(always)]
 fn passes_through<S: Simd>(simd: S, o: V<S>, d: V<S>, corners: &[DVec3; 3]) -> M<S> {
     let zero = F::splat(simd, 0.0);
-    let [a, b, c] = [0, 1, 2].map(
-        #[inline(always)]
-        |k: usize| V::splat(simd, corners[k]).sub(o),
-    );
+    let [a, b, c] = channels!(k => V::splat(simd, corners[k]).sub(o));
     let (u, v, w) = (d.dot(a.cross(b)), d.dot(b.cross(c)), d.dot(c.cross(a)));
     (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
         | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero))

@@ -12,6 +12,71 @@ pub(super) const LANES: usize = 8;
 pub(super) type F<S> = f64x8<S>;
 pub(super) type M<S> = mask64x8<S>;
 
+// Written out, since the closures of array functions are compiled by themselves, without the vector
+// instructions of where they are called.
+
+/// The expression for k = 0, 1 and 2.
+macro_rules! channels {
+    ($k:ident => $value:expr) => {
+        [
+            {
+                let $k = 0usize;
+                $value
+            },
+            {
+                let $k = 1usize;
+                $value
+            },
+            {
+                let $k = 2usize;
+                $value
+            },
+        ]
+    };
+}
+pub(super) use channels;
+
+/// The expression for every lane.
+macro_rules! eight {
+    ($lane:ident => $value:expr) => {
+        [
+            {
+                let $lane = 0usize;
+                $value
+            },
+            {
+                let $lane = 1usize;
+                $value
+            },
+            {
+                let $lane = 2usize;
+                $value
+            },
+            {
+                let $lane = 3usize;
+                $value
+            },
+            {
+                let $lane = 4usize;
+                $value
+            },
+            {
+                let $lane = 5usize;
+                $value
+            },
+            {
+                let $lane = 6usize;
+                $value
+            },
+            {
+                let $lane = 7usize;
+                $value
+            },
+        ]
+    };
+}
+pub(super) use eight;
+
 /// Eight vectors of three components.
 #[derive(Clone, Copy)]
 pub(super) struct V<S: Simd> {
@@ -75,10 +140,7 @@ impl<S: Simd> V<S> {
     #[inline(always)]
     pub(super) fn to_array(self) -> [DVec3; LANES] {
         let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
-        std::array::from_fn(
-            #[inline(always)]
-            |k| DVec3::new(x[k], y[k], z[k]),
-        )
+        eight!(k => DVec3::new(x[k], y[k], z[k]))
     }
 }
 
@@ -91,6 +153,15 @@ pub(super) fn larger<S: Simd>(a: F<S>, b: F<S>) -> F<S> {
 /// The lanes whose bits are set.
 #[inline(always)]
 pub(super) fn lanes_of(mask: u64) -> impl Iterator<Item = usize> {
+    bits_of(mask).map(
+        #[inline(always)]
+        |lane| lane % LANES,
+    )
+}
+
+/// The bits that are set, from the lowest.
+#[inline(always)]
+pub(super) fn bits_of(mask: u64) -> impl Iterator<Item = usize> {
     let mut left = mask;
     std::iter::from_fn(
         #[inline(always)]
@@ -98,9 +169,9 @@ pub(super) fn lanes_of(mask: u64) -> impl Iterator<Item = usize> {
             if left == 0 {
                 return None;
             }
-            let lane = left.trailing_zeros() as usize % LANES;
+            let bit = left.trailing_zeros() as usize;
             left &= left - 1;
-            Some(lane)
+            Some(bit)
         },
     )
 }

@@ -109,7 +109,7 @@ impl<S: Simd> Looks<S> {
 
     /// Each its own.
     #[inline(always)]
-    pub(super) fn of(simd: S, looks: [&Look; LANES]) -> Self {
+    pub(super) fn of(simd: S, looks: &[&Look; LANES]) -> Self {
         Self::by(
             simd,
             #[inline(always)]

@@ -29,10 +29,17 @@ use super::follow::{MAX_RAYS_PER_SAMPLE, Pending, RayKind, Work};
 use super::media::Media;
 use super::{Blockers, Tracer};
 use crate::{Accel, Hit, SamplePlace, TraceCounts};
-use forms::{Forms, Kind, NO_HIT};
-use lanes::{F, LANES, V, first_lanes};
+use forms::{Forms, Kind, NO_HIT, Rank};
+use lanes::{F, LANES, V, eight, first_lanes};
 use looks::{Lamp, Look, Way};
 use rays::{Packet, Rays};
+
+/// Groups of rays by what they meet: nothing, a ball, a sheet, or anything else.
+const GROUPS: usize = 4;
+const LEAVING: usize = 0;
+const BALLS: usize = 1;
+const SHEETS: usize = 2;
+const GENERAL: usize = 3;
 
 /// Samples that are followed together.
 const BATCH: usize = 1024;
@@ -46,6 +53,8 @@ pub(super) struct Stream {
     level: Level,
     forms: Forms,
     looks: Vec<Look>,
+    /// Group of the rays that meet what has a rank, by rank + 1.
+    groups: Vec<u8>,
     lamps: Vec<Lamp>,
     /// Whether there are few enough surfaces to test packets against all.
     is_flat: bool,
@@ -66,10 +75,9 @@ pub(super) struct Desk {
     t: Vec<f64>,
     rank: Vec<f64>,
     hits: Vec<Hit>,
-    /// Numbers of the rays that meet a ball, a sheet, or something else, and of those handed over.
-    balls: Vec<u32>,
-    sheets: Vec<u32>,
-    general: Vec<u32>,
+    /// Numbers of the rays by what they meet.
+    lists: [Vec<u32>; GROUPS],
+    /// Numbers of the rays that are handed over.
     handed: Vec<u32>,
     /// What each sample has gathered.
     sums: Vec<[f32; 4]>,
@@ -120,11 +128,19 @@ impl Stream {
         }
         let forms = Forms::of(world.objects());
         let materials = tracer.materials.len();
+        let looks: Vec<Look> = (0..materials).map(|material| Look::of(tracer, material)).collect();
+        let group = |rank: &Rank| match (rank.kind, looks[rank.material].way) {
+            (Kind::Ball, Way::Constant) => BALLS,
+            (Kind::Sheet, Way::Constant | Way::Textured) => SHEETS,
+            _ => GENERAL,
+        };
+        let groups = std::iter::once(LEAVING).chain(forms.ranks.iter().map(group));
         Some(Self {
             level: Level::new(),
             is_flat: forms.len() <= MOST_FORMS,
+            groups: groups.map(|group| group as u8).collect(),
             forms,
-            looks: (0..materials).map(|material| Look::of(tracer, material)).collect(),
+            looks,
             lamps: (0..tracer.lights.len()).map(|light| Lamp::of(tracer, light)).collect(),
             asks: tracer.blockers != Blockers::All,
         })
@@ -171,15 +187,15 @@ impl Tracer<'_> {
     #[inline(always)]
     fn primaries<S: Simd>(&self, simd: S, places: &[SamplePlace], desk: &mut Desk) {
         for (number, eight) in places.chunks(LANES).enumerate() {
-            let place = |lane: usize| eight[lane.min(eight.len() - 1)];
+            let place = |lane: usize| &eight[lane.min(eight.len() - 1)];
             let there = first_lanes(simd, eight.len());
             let one = F::splat(simd, 1.0);
-            let slot = F::from_fn(simd, |lane| (number * LANES + lane) as f64);
+            let slot = F::load_array(simd, eight!(lane => (number * LANES + lane) as f64));
             let rays = if self.rays.has_lens() {
-                eight_rays(simd, |lane| self.rays.sample(&place(lane)))
+                eight_rays(simd, |lane| self.rays.sample(place(lane)))
             } else {
-                let x = F::from_fn(simd, |lane| place(lane).x);
-                let y = F::from_fn(simd, |lane| place(lane).y);
+                let x = F::load_array(simd, eight!(lane => place(lane).x));
+                let y = F::load_array(simd, eight!(lane => place(lane).y));
                 self.through(simd, x, y)
             };
             let [origin, direction] = rays;
@@ -199,12 +215,12 @@ impl Tracer<'_> {
     #[inline(always)]
     fn through<S: Simd>(&self, simd: S, x: F<S>, y: F<S>) -> [V<S>; 2] {
         let m = self.rays.world_from_pixel();
-        let row = |k: usize| {
-            let DVec4 { x: a, y: b, w: c, .. } = m.row(k);
-            F::splat(simd, a) * x + F::splat(simd, b) * y + F::splat(simd, c)
+        let w = combined(simd, m.row(3), x, y);
+        let near = V {
+            x: combined(simd, m.row(0), x, y) / w,
+            y: combined(simd, m.row(1), x, y) / w,
+            z: combined(simd, m.row(2), x, y) / w,
         };
-        let w = row(3);
-        let near = V { x: row(0) / w, y: row(1) / w, z: row(2) / w };
         match self.view.kind {
             ViewKind::Central { eye_world } => {
                 let eye = V::splat(simd, eye_world);
@@ -278,38 +294,40 @@ impl Tracer<'_> {
 
     /// Sorts rays by what they meet. Those that meet nothing are done with.
     fn sort(&self, stream: &Stream, pass: &mut Pass<'_>) {
-        for list in [&mut pass.desk.balls, &mut pass.desk.sheets, &mut pass.desk.general] {
-            list.clear();
+        let Desk { rays, rank, lists, .. } = &mut *pass.desk;
+        let count = rays.len();
+        let mut lengths = [0; GROUPS];
+        for list in lists.iter_mut() {
+            list.resize(count + 1, 0);
         }
-        for number in 0..pass.desk.rays.len() {
-            let rank = pass.desk.rank[number];
-            if rank < 0.0 {
-                self.leave_stream(number, pass);
-                continue;
-            }
-            let of = &stream.forms.ranks[rank as usize];
-            let list = match (of.kind, stream.looks[of.material].way) {
-                (Kind::Ball, Way::Constant) => &mut pass.desk.balls,
-                (Kind::Sheet, Way::Constant | Way::Textured) => &mut pass.desk.sheets,
-                _ => &mut pass.desk.general,
-            };
-            list.push(number as u32);
+        for (number, rank) in rank[..count].iter().enumerate() {
+            // The rank of nothing is -1.
+            let group = usize::from(stream.groups[(*rank + 1.0) as usize]) % GROUPS;
+            lists[group][lengths[group]] = number as u32;
+            lengths[group] += 1;
         }
+        for (list, length) in lists.iter_mut().zip(lengths) {
+            list.truncate(length);
+        }
+        self.leave_stream(pass);
     }
 
-    /// A ray sees nothing but the background.
-    fn leave_stream(&self, number: usize, pass: &mut Pass<'_>) {
-        let rays = &pass.desk.rays;
-        let (slot, [r, g, b]) = (rays.slot(number), rays.weight(number).map(|w| w as f32));
-        let (seen, alpha) = match pass.nest {
-            0 => {
-                let direction = rays.ray(number).direction;
-                let seen = self.sky.in_row(pass.places[slot].row, direction).unwrap_or(LinearRgb::BLACK);
-                (seen, if self.sky.is_transparent() { 0.0 } else { 1.0 })
-            }
-            _ => (self.sky.towards(rays.ray(number).direction), 0.0),
-        };
-        pass.desk.add(slot, LinearRgb::new(r, g, b) * seen, alpha);
+    /// Rays that see nothing but the background.
+    fn leave_stream(&self, pass: &mut Pass<'_>) {
+        let list = std::mem::take(&mut pass.desk.lists[LEAVING]);
+        let covered = if self.sky.is_transparent() { 0.0 } else { 1.0 };
+        for &number in &list {
+            let rays = &pass.desk.rays;
+            let number = number as usize;
+            let (slot, [r, g, b]) = (rays.slot(number), rays.weight(number).map(|w| w as f32));
+            let direction = rays.direction(number);
+            let (seen, alpha) = match pass.nest {
+                0 => (self.sky.in_row(pass.places[slot].row, direction).unwrap_or(LinearRgb::BLACK), covered),
+                _ => (self.sky.towards(direction), 0.0),
+            };
+            pass.desk.add(slot, LinearRgb::new(r, g, b) * seen, alpha);
+        }
+        pass.desk.lists[LEAVING] = list;
     }
 
     /// Has the other tracer follow what is not done here.
@@ -341,14 +359,20 @@ impl Tracer<'_> {
     }
 }
 
+/// A row of a matrix times places (x, y, 0, 1).
+#[inline(always)]
+fn combined<S: Simd>(simd: S, row: DVec4, x: F<S>, y: F<S>) -> F<S> {
+    F::splat(simd, row.x) * x + F::splat(simd, row.y) * y + F::splat(simd, row.w)
+}
+
 /// Eight rays' origins and directions.
 #[inline(always)]
 fn eight_rays<S: Simd>(simd: S, ray: impl Fn(usize) -> crate::Ray) -> [V<S>; 2] {
-    let rays: [crate::Ray; LANES] = std::array::from_fn(ray);
+    let rays: [crate::Ray; LANES] = eight!(lane => ray(lane));
     let lanes = |of: fn(&crate::Ray) -> DVec3| V {
-        x: F::from_fn(simd, |lane| of(&rays[lane]).x),
-        y: F::from_fn(simd, |lane| of(&rays[lane]).y),
-        z: F::from_fn(simd, |lane| of(&rays[lane]).z),
+        x: F::load_array(simd, eight!(lane => of(&rays[lane]).x)),
+        y: F::load_array(simd, eight!(lane => of(&rays[lane]).y)),
+        z: F::load_array(simd, eight!(lane => of(&rays[lane]).z)),
     };
     [lanes(|ray| ray.origin), lanes(|ray| ray.direction)]
 }

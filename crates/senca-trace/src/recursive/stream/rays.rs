@@ -96,6 +96,10 @@ impl Rays {
         }
     }
 
+    pub(super) fn direction(&self, number: usize) -> DVec3 {
+        DVec3::new(self.rows[3][number], self.rows[4][number], self.rows[5][number])
+    }
+
     pub(super) fn weight(&self, number: usize) -> [f64; 3] {
         [7, 8, 9].map(|k| self.rows[k][number])
     }

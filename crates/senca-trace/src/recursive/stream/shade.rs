@@ -5,11 +5,11 @@ use senca_math::LinearRgb;
 use senca_math::glam::{DVec3, Vec3};
 use senca_shading::{Incident, PhongConstants};
 
-use super::lanes::{F, LANES, M, V, lanes_of, larger};
+use super::lanes::{F, LANES, M, V, channels, eight, first_lanes, lanes_of, larger};
 use super::looks::{Lamp, Look, Looks, Way};
 use super::power::power;
 use super::rays::{Packet, gather};
-use super::{Pass, Stream};
+use super::{BALLS, GENERAL, Pass, SHEETS, Stream};
 use crate::Ray;
 use crate::recursive::Tracer;
 use crate::recursive::lamps::ToLight;
@@ -52,11 +52,11 @@ impl Tracer<'_> {
     /// Rays that meet spheres.
     #[inline(always)]
     pub(super) fn balls<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
-        let list = std::mem::take(&mut pass.desk.balls);
+        let list = std::mem::take(&mut pass.desk.lists[BALLS]);
         for eight in list.chunks(LANES) {
             let (rays, live, t, ranks) = meeting(simd, pass, eight);
             let looks = looks_of(simd, stream, &ranks);
-            let numbers = Numbers { simd, stream, ranks: &ranks };
+            let numbers = Numbers::new(simd, stream, &ranks);
             let center = numbers.vector(0);
             let from_center = rays.origin.add(rays.direction.times(t)).sub(center);
             let normal = from_center.times(F::splat(simd, 1.0) / from_center.dot(from_center).sqrt());
@@ -64,17 +64,17 @@ impl Tracer<'_> {
             let error = numbers.at(4) + rounding(simd, &rays, point);
             self.flat_places(simd, stream, pass, rays, live, t, point, normal, error, looks);
         }
-        pass.desk.balls = list;
+        pass.desk.lists[BALLS] = list;
     }
 
     /// Rays that meet flat pieces.
     #[inline(always)]
     pub(super) fn sheets<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
-        let list = std::mem::take(&mut pass.desk.sheets);
+        let list = std::mem::take(&mut pass.desk.lists[SHEETS]);
         for eight in list.chunks(LANES) {
             let (rays, live, t, ranks) = meeting(simd, pass, eight);
             let mut looks = looks_of(simd, stream, &ranks);
-            let numbers = Numbers { simd, stream, ranks: &ranks };
+            let numbers = Numbers::new(simd, stream, &ranks);
             let normal = numbers.vector(0);
             let near = rays.origin.add(rays.direction.times(t));
             let point = near.sub(normal.times(normal.dot(near) - numbers.at(3)));
@@ -85,7 +85,7 @@ impl Tracer<'_> {
             self.lay_pictures(simd, stream, &ranks, [u, v], &mut looks);
             self.flat_places(simd, stream, pass, rays, live, t, point, normal, error, looks);
         }
-        pass.desk.sheets = list;
+        pass.desk.lists[SHEETS] = list;
     }
 
     /// Multiplies textures in, where there are some.
@@ -148,7 +148,7 @@ impl Tracer<'_> {
     /// Rays that meet anything else, looked at one by one up to the light of the lamps.
     #[inline(always)]
     pub(super) fn general<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
-        let list = std::mem::take(&mut pass.desk.general);
+        let list = std::mem::take(&mut pass.desk.lists[GENERAL]);
         let mut seen = [None; LANES];
         let mut numbers = [0; LANES];
         let mut count = 0;
@@ -164,7 +164,7 @@ impl Tracer<'_> {
         if count > 0 {
             self.shade_general(simd, stream, pass, &numbers, &seen, count);
         }
-        pass.desk.general = list;
+        pass.desk.lists[GENERAL] = list;
     }
 
     /// The place where a ray meets something; `None` where it is not seen, or not shaded here.
@@ -218,13 +218,13 @@ impl Tracer<'_> {
     ) {
         let Some(first) = &seen[0] else { return };
         let at = |lane: usize| if lane < count { seen[lane].as_ref().unwrap_or(first) } else { first };
-        let all: [&Seen; LANES] = std::array::from_fn(at);
+        let all: [&Seen; LANES] = eight!(lane => at(lane));
         let rays = pass.desk.rays.gather(simd, numbers);
-        let number = |of: fn(&Seen) -> f64| F::from_fn(simd, |lane| of(all[lane]));
+        let number = |of: fn(&Seen) -> f64| F::load_array(simd, eight!(lane => of(all[lane])));
         let vector = |of: fn(&Seen) -> DVec3| V {
-            x: F::from_fn(simd, |lane| of(all[lane]).x),
-            y: F::from_fn(simd, |lane| of(all[lane]).y),
-            z: F::from_fn(simd, |lane| of(all[lane]).z),
+            x: F::load_array(simd, eight!(lane => of(all[lane]).x)),
+            y: F::load_array(simd, eight!(lane => of(all[lane]).y)),
+            z: F::load_array(simd, eight!(lane => of(all[lane]).z)),
         };
         let places = Places {
             t: number(|seen| seen.t),
@@ -233,11 +233,11 @@ impl Tracer<'_> {
             face: vector(|seen| seen.face),
             error: number(|seen| seen.error),
             entering: number(|seen| f64::from(u8::from(seen.entering))).simd_gt(F::splat(simd, 0.5)),
-            looks: Looks::of(simd, all.map(|seen| &seen.look)),
+            looks: Looks::of(simd, &eight!(lane => &all[lane].look)),
         };
-        let live = super::lanes::first_lanes(simd, count);
+        let live = first_lanes(simd, count);
         let any = all.iter().any(|seen| seen.reflector.is_some());
-        let reflectors = any.then(|| all.map(|seen| seen.reflector));
+        let reflectors = any.then(|| eight!(lane => all[lane].reflector));
         self.shade(simd, stream, pass, &rays, live, &places, reflectors.as_ref());
     }
 
@@ -280,10 +280,7 @@ impl Tracer<'_> {
     ) -> [F<S>; 3] {
         let zero = F::splat(simd, 0.0);
         let Looks { emission, ambient, .. } = places.looks;
-        let mut sum = [0, 1, 2].map(
-            #[inline(always)]
-            |k: usize| emission[k] + ambient[k],
-        );
+        let mut sum = channels!(k => emission[k] + ambient[k]);
         for (number, lamp) in stream.lamps.iter().enumerate() {
             let count = self.lights[number].places(self.settings.soft_shadows);
             for index in 0..count {
@@ -349,9 +346,8 @@ impl Tracer<'_> {
         let length = way.dot(way).sqrt();
         let endless = F::splat(simd, f64::INFINITY);
         Coming {
-            to_light: lanes_from(simd, &to_light.map(|v| v.as_dvec3())),
-            intensity: [0, 1, 2]
-                .map(|k: usize| F::from_fn(simd, |lane| f64::from(colors[lane].to_array()[k]))),
+            to_light: lanes_from(simd, &eight!(lane => to_light[lane].as_dvec3())),
+            intensity: channels!(k => F::load_array(simd, eight!(lane => f64::from(colors[lane].to_array()[k])))),
             shines: M::from_bitmask(simd, shines),
             origin,
             way: way.times(F::splat(simd, 1.0) / length),
@@ -394,10 +390,7 @@ impl Tracer<'_> {
                 shares[k][lane] = f64::from(share[k]);
             }
         }
-        shares.map(
-            #[inline(always)]
-            |share| F::load_array(simd, share),
-        )
+        channels!(k => F::load_array(simd, shares[k]))
     }
 
     /// Adds light to the samples. Returns the share of the places in the picture.
@@ -415,7 +408,8 @@ impl Tracer<'_> {
         let mut light = light;
         if let Some(fog) = &self.fog {
             let (distance, t) = (rays.distance.to_array(), places.t.to_array());
-            let clear = F::from_fn(simd, |lane| f64::from(self.clear_share(distance[lane], t[lane])));
+            let clear =
+                F::load_array(simd, eight!(lane => f64::from(self.clear_share(distance[lane], t[lane]))));
             for k in 0..3 {
                 let color = F::splat(simd, f64::from(fog.color.to_array()[k]));
                 light[k] = light[k] * clear + color * (F::splat(simd, 1.0) - clear);
@@ -429,12 +423,9 @@ impl Tracer<'_> {
         }
         let alpha = if pass.nest == 0 { 1.0 } else { 0.0 };
         let slots = rays.slot.to_array();
-        let light = light.map(
-            #[inline(always)]
-            |channel| channel.to_array(),
-        );
+        let light = channels!(k => light[k].to_array());
         for lane in lanes_of(live.to_bitmask()) {
-            let [r, g, b] = [0, 1, 2].map(|k: usize| light[k][lane] as f32);
+            let [r, g, b] = channels!(k => light[k][lane] as f32);
             pass.desk.add(slots[lane] as usize, LinearRgb::new(r, g, b), alpha);
         }
         weight
@@ -466,15 +457,9 @@ impl Tracer<'_> {
         let cos = normal.dot(d);
         if (mirrors & fresnel).any_true() {
             let reflected = fresnel_shares(simd, -cos, F::splat(simd, 1.0) / ior);
-            share = share.map(
-                #[inline(always)]
-                |k| fresnel.select(k * reflected, k),
-            );
+            share = channels!(k => fresnel.select(share[k] * reflected, share[k]));
         }
-        let weight = [0, 1, 2].map(
-            #[inline(always)]
-            |k: usize| weight[k] * share[k],
-        );
+        let weight = channels!(k => weight[k] * share[k]);
         let most = larger(weight[0], larger(weight[1], weight[2]));
         let least = F::splat(simd, f64::from(self.settings.adaptive_depth));
         let sent = mirrors & most.simd_ge(least) & most.simd_gt(zero);
@@ -510,31 +495,19 @@ fn meeting<S: Simd>(simd: S, pass: &Pass<'_>, eight: &[u32]) -> (Packet<S>, M<S>
     let mut numbers = [eight[0]; LANES];
     numbers[..eight.len()].copy_from_slice(eight);
     let desk = &pass.desk;
-    let ranks = std::array::from_fn(
-        #[inline(always)]
-        |lane| desk.rank[numbers[lane] as usize] as u32,
-    );
-    let live = super::lanes::first_lanes(simd, eight.len());
+    let ranks = eight!(lane => desk.rank[numbers[lane] as usize] as u32);
+    let live = first_lanes(simd, eight.len());
     (desk.rays.gather(simd, &numbers), live, gather(simd, &desk.t, &numbers), ranks)
 }
 
 /// The materials of what has these ranks.
 #[inline(always)]
 fn looks_of<S: Simd>(simd: S, stream: &Stream, ranks: &[u32; LANES]) -> Looks<S> {
-    let materials = ranks.map(
-        #[inline(always)]
-        |rank| stream.forms.ranks[rank as usize].material,
-    );
+    let materials = eight!(lane => stream.forms.ranks[ranks[lane] as usize].material);
     if materials.iter().all(|material| *material == materials[0]) {
         return Looks::splat(simd, &stream.looks[materials[0]]);
     }
-    Looks::of(
-        simd,
-        materials.map(
-            #[inline(always)]
-            |material| &stream.looks[material],
-        ),
-    )
+    Looks::of(simd, &eight!(lane => &stream.looks[materials[lane]]))
 }
 
 /// The numbers of what has these ranks.
@@ -542,11 +515,21 @@ struct Numbers<'a, S> {
     simd: S,
     stream: &'a Stream,
     ranks: &'a [u32; LANES],
+    /// Whether all are the same.
+    alike: bool,
 }
 
-impl<S: Simd> Numbers<'_, S> {
+impl<'a, S: Simd> Numbers<'a, S> {
+    #[inline(always)]
+    fn new(simd: S, stream: &'a Stream, ranks: &'a [u32; LANES]) -> Self {
+        Self { simd, stream, ranks, alike: *ranks == [ranks[0]; LANES] }
+    }
+
     #[inline(always)]
     fn at(&self, k: usize) -> F<S> {
+        if self.alike {
+            return F::splat(self.simd, self.stream.forms.ranks[self.ranks[0] as usize].numbers[k]);
+        }
         F::from_fn(
             self.simd,
             #[inline(always)]
@@ -572,9 +555,9 @@ fn rounding<S: Simd>(simd: S, rays: &Packet<S>, point: V<S>) -> F<S> {
 #[inline(always)]
 fn lanes_from<S: Simd>(simd: S, vectors: &[DVec3; LANES]) -> V<S> {
     V {
-        x: F::from_fn(simd, |lane| vectors[lane].x),
-        y: F::from_fn(simd, |lane| vectors[lane].y),
-        z: F::from_fn(simd, |lane| vectors[lane].z),
+        x: F::load_array(simd, eight!(lane => vectors[lane].x)),
+        y: F::load_array(simd, eight!(lane => vectors[lane].y)),
+        z: F::load_array(simd, eight!(lane => vectors[lane].z)),
     }
 }
 
@@ -638,10 +621,7 @@ fn from_simple<S: Simd>(
             (origin, way.times(F::splat(simd, 1.0) / length), length * F::splat(simd, UP_TO))
         }
     };
-    let intensity = color.to_array().map(
-        #[inline(always)]
-        |channel| F::splat(simd, channel),
-    );
+    let intensity = [F::splat(simd, color.x), F::splat(simd, color.y), F::splat(simd, color.z)];
     Coming { to_light: way, intensity, shines: live, origin, way, t_max }
 }
 
@@ -662,13 +642,10 @@ fn reflected<S: Simd>(simd: S, rays: &Packet<S>, places: &Places<S>, coming: &Co
             highlight = shows.select(power(simd, mirrored, exponent), zero);
         }
     }
-    [0, 1, 2].map(
-        #[inline(always)]
-        |k: usize| {
-            let share = diffuse[k] * cos + specular[k] * highlight;
-            faces.select(coming.intensity[k] * share, zero)
-        },
-    )
+    channels!(k => {
+        let share = diffuse[k] * cos + specular[k] * highlight;
+        faces.select(coming.intensity[k] * share, zero)
+    })
 }
 
 /// The same of places with another model, one by one.
@@ -679,11 +656,11 @@ fn by_reflectors<S: Simd>(
     reflected: &mut [F<S>; 3],
 ) {
     let to_light = coming.to_light.to_array();
-    let intensity = coming.intensity.map(|channel| channel.to_array());
-    let mut of_lanes = reflected.map(|channel| channel.to_array());
+    let intensity = channels!(k => coming.intensity[k].to_array());
+    let mut of_lanes = channels!(k => reflected[k].to_array());
     for lane in 0..LANES {
         let Some(reflector) = &reflectors[lane] else { continue };
-        let [r, g, b] = [0, 1, 2].map(|k: usize| intensity[k][lane] as f32);
+        let [r, g, b] = channels!(k => intensity[k][lane] as f32);
         let to_light = to_light[lane].as_vec3();
         let incident = Incident { to_light, intensity: LinearRgb::new(r, g, b) };
         let color = reflector.reflected(&incident).to_array();
@@ -691,5 +668,5 @@ fn by_reflectors<S: Simd>(
             of_lanes[k][lane] = f64::from(color[k]);
         }
     }
-    *reflected = of_lanes.map(|channel| F::load_array(simd, channel));
+    *reflected = channels!(k => F::load_array(simd, of_lanes[k]));
 }
