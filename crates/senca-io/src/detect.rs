@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_extension_decides_where_content_does_not() {
-        assert_eq!(detect(b"", Some("STL")), Some(Format::Stl));
+        assert_eq!(detect(b"what is this", Some("STL")), Some(Format::Stl));
         assert_eq!(detect(b"what is this", Some("toml")), Some(Format::SceneFile));
         assert_eq!(detect(b"what is this", Some("txt")), None);
         assert_eq!(detect(b"what is this", None), None);
