@@ -34,6 +34,7 @@
 //! ```
 
 mod canvas;
+mod channel;
 mod error;
 mod geometry;
 mod gouraud;
@@ -60,5 +61,5 @@ pub use render::{render, render_part, render_with};
 pub use report::{Report, StageSeconds};
 pub use senca_math::Control;
 pub use settings::{
-    ColorInterpolation, Crop, Culling, Raster, Settings, Shading, TextureMethod, WireSettings,
+    Channel, ColorInterpolation, Crop, Culling, Raster, Settings, Shading, TextureMethod, WireSettings,
 };

@@ -26,7 +26,7 @@ use crate::geometry::World;
 use crate::gouraud::light_vertices;
 use crate::material::resolve_materials;
 use crate::report::{Report, timed};
-use crate::settings::{Crop, Raster, Settings, Shading};
+use crate::settings::{Channel, Crop, Raster, Settings, Shading};
 use crate::shade::Shader;
 use crate::single_pass::SinglePass;
 use crate::strokes::Strokes;
@@ -113,7 +113,7 @@ fn draw(
         on_threads(settings.threads, || {
             let scene = &*scene.at_time(None, 0.0);
             match settings.shading {
-                shading if shading.is_lines() => {
+                shading if shading.is_lines() && settings.channel == Channel::Color => {
                     lines::draw(scene, view, settings, &mut canvas, area, control)
                 }
                 _ => draw_faces(scene, view, settings, &mut canvas, area, control),
@@ -170,7 +170,7 @@ fn draw_faces(
         clip_from_object: world.placed.iter().map(|p| view.clip_from_world * p.world_from_object).collect(),
         vertex_colors: Vec::new(),
     };
-    if settings.shading == Shading::Gouraud {
+    if settings.shading == Shading::Gouraud && settings.channel == Channel::Color {
         shader.vertex_colors = timed(&mut report.seconds.vertices, || light_vertices(&shader));
     }
     control.check()?;
@@ -238,7 +238,8 @@ impl Frame<'_, '_> {
     ) -> Result<(), RenderError> {
         self.planes.resize(window.pixels());
         let mut seconds = 0.0;
-        let mut single = (!self.shader.settings.two_pass).then(|| vec![[0.0; 4]; window.pixels()]);
+        let in_one_pass = !self.shader.settings.two_pass && !self.measures();
+        let mut single = in_one_pass.then(|| vec![[0.0; 4]; window.pixels()]);
         timed(&mut seconds, || self.find_visible(window, single.as_deref_mut()))?;
         let layers = timed(&mut seconds, || self.peel(window))?;
         self.report.seconds.raster += seconds;
@@ -263,25 +264,24 @@ impl Frame<'_, '_> {
         Ok(())
     }
 
+    /// Whether pixels hold something else than colour.
+    fn measures(&self) -> bool {
+        self.shader.settings.channel != Channel::Color
+    }
+
     /// Step 1: depth and identifier of what is opaque; with `color`, its colour too.
     fn find_visible(&mut self, window: &Window, color: Option<&mut [[f32; 4]]>) -> Result<(), RenderError> {
         let cutter = MaskCutter { shader: self.shader, window };
         let single = SinglePass { shader: self.shader, window };
-        let in_one_pass = color.is_some();
+        let (in_one_pass, measures) = (color.is_some(), self.measures());
         let mut target = self.planes.target(&window.area)?;
         if let Some(color) = color {
             let color = senca_raster::ColorPlane::Rgba32F(color);
             target = target.with_color(color).map_err(|_| RenderError::area_too_large(&window.area))?;
         }
         target.clear(&EMPTY);
-        let mut pass = Pass {
-            shader: self.shader,
-            window,
-            rasterizer: self.rasterizer.as_mut(),
-            control: self.control,
-            counters: Counters::default(),
-        };
-        for group in self.groups.iter().filter(|g| g.layer != Layer::Blended) {
+        let mut pass = Pass::new(self.shader, window, self.rasterizer.as_mut(), self.control);
+        for group in self.groups.iter().filter(|g| g.layer != Layer::Blended || measures) {
             let shading = match (in_one_pass, group.layer) {
                 (true, _) => RasterShading::Custom(&single),
                 (false, Layer::Masked) => RasterShading::Custom(&cutter),
@@ -297,7 +297,7 @@ impl Frame<'_, '_> {
     /// Step 3, before step 2 so that its colours are ready: the transparent layers of every pixel
     /// over one another, colours times alpha.
     fn peel(&mut self, window: &Window) -> Result<Option<Vec<[f32; 4]>>, RenderError> {
-        if !self.groups.iter().any(|g| g.layer == Layer::Blended) {
+        if self.measures() || !self.groups.iter().any(|g| g.layer == Layer::Blended) {
             return Ok(None);
         }
         let pixels = window.pixels();
@@ -320,13 +320,7 @@ impl Frame<'_, '_> {
         let mut layer = Planes { depth: self.planes.depth.clone(), ids: vec![NO_ID; window.pixels()] };
         let peeler = Peeler { width: window.area.width as usize, last };
         let mut target = layer.target(&window.area)?;
-        let mut pass = Pass {
-            shader: self.shader,
-            window,
-            rasterizer: self.rasterizer.as_mut(),
-            control: self.control,
-            counters: Counters::default(),
-        };
+        let mut pass = Pass::new(self.shader, window, self.rasterizer.as_mut(), self.control);
         for group in self.groups.iter().filter(|g| g.layer == Layer::Blended) {
             self.drawer.draw(&mut pass, &mut target, group, &RasterShading::Custom(&peeler))?;
         }
@@ -466,13 +460,37 @@ impl Resolve<'_, '_> {
             for (j, row) in strip.chunks_mut(stride).enumerate() {
                 let y = first_row + j;
                 for x in start..end {
-                    let (rgba, surface) = self.pixel(x, y, &mut cache);
+                    let (rgba, surface) = match self.shader.settings.channel {
+                        Channel::Color => self.pixel(x, y, &mut cache),
+                        channel => self.measure(channel, x, y, &mut cache),
+                    };
                     put_sample(&mut row[left + x], rgba, self.weight, self.first);
                     shaded += u64::from(surface);
                 }
             }
         }
         shaded
+    }
+
+    /// Value of a channel, and whether there is a surface.
+    fn measure(
+        &self,
+        channel: Channel,
+        x: usize,
+        y: usize,
+        cache: &mut SetupCache<'_, '_>,
+    ) -> ([f32; 4], bool) {
+        let pixel = y * self.window.area.width as usize + x;
+        let id = self.planes.ids[pixel];
+        if id == NO_ID {
+            return (channel.of_nothing(), false);
+        }
+        let [px, py] = self.window.place(x, y);
+        let seen = match id.checked_sub(self.shader.world.triangles) {
+            Some(stroke) => self.strokes.seen(self.shader, stroke as usize, px, py),
+            None => self.shader.seen(cache.get(id), px, py, self.planes.depth[pixel]),
+        };
+        (channel.of(self.shader, &seen), true)
     }
 
     /// Colour times alpha, and whether a surface was shaded for it.

@@ -38,6 +38,9 @@ pub struct Settings {
     pub background: Option<Background>,
     /// Lines of the line modes, and of meshes made of lines and points.
     pub wire: WireSettings,
+    /// What pixels hold. All but colour take one sample a pixel, and faces whatever the shading says.
+    /// Default [`Channel::Color`].
+    pub channel: Channel,
 }
 
 /// What is drawn and how it is lit.
@@ -59,6 +62,26 @@ pub enum Shading {
     /// Every pixel lit with its material's own model, all its textures included.
     #[default]
     Material,
+}
+
+/// What the pixels of a picture hold. All components but alpha, which is 1, are one number, except of
+/// normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// Light.
+    #[default]
+    Color,
+    /// Distance from the eye along the axis of the view, in world units: planes across the axis have one
+    /// depth. Infinity where nothing is.
+    Depth,
+    /// Unit normal that the surface is shaded with, in world coordinates, on the side that is seen: x is
+    /// red, y green, z blue. Zero where nothing is, and on lines and points.
+    Normals,
+    /// Number of the object, from 1: its place in `Scene::instances`. 0 where nothing is.
+    Objects,
+    /// Number of the triangle among those of the whole picture, from 1, exact to 2^24; lines and points
+    /// follow. 0 where nothing is.
+    Triangles,
 }
 
 /// The rasterizers.
@@ -166,6 +189,7 @@ impl Default for Settings {
             crop: None,
             background: None,
             wire: WireSettings::default(),
+            channel: Channel::default(),
         }
     }
 }
@@ -194,6 +218,9 @@ impl Settings {
             }
             () if !(self.tolerance_px > 0.0 && self.tolerance_px.is_finite()) => {
                 wrong("tolerance_px", self.tolerance_px, "above 0 and finite")
+            }
+            () if self.samples > 1 && self.channel != Channel::Color => {
+                wrong("samples", f64::from(self.samples), "1 for all channels but colour")
             }
             () if !least_one(self.wire.width) => wrong("wire.width", f64::from(self.wire.width), "1 to 64"),
             () if !least_one(self.wire.point_size) => {

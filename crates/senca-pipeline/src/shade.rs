@@ -91,11 +91,7 @@ impl<'w> Shader<'w> {
     ) -> (LinearRgb, f32) {
         let flat = self.settings.shading == Shading::Flat;
         let position = if flat { triangle.centroid() } else { position };
-        let normal = match (&material.normal_texture, flat) {
-            (_, true) => triangle.plane_normal(),
-            (Some(map), false) => self.mapped_normal(triangle, weights, map, texels),
-            (None, false) => triangle.normal(weights),
-        };
+        let normal = if flat { triangle.plane_normal() } else { self.normal(triangle, weights, texels) };
         let base = Vec4::from(texels.read(material.base_texture())) * triangle.color(weights);
         let point = ShadingPoint { position, normal, to_viewer: self.to_viewer(position) };
         let occlusion = match &material.occlusion_texture {
@@ -140,6 +136,26 @@ impl<'w> Shader<'w> {
                 let constants = PhongConstants::of_metallic_roughness(base, metallic, roughness);
                 phong(&self.rig, &at.point, &constants, at.occlusion)
             }
+        }
+    }
+
+    /// The normal that `triangle` is lit with at (x, y), unless it is shaded flat: interpolated, and
+    /// turned by the material's map.
+    pub(crate) fn shading_normal(
+        &self,
+        triangle: &TriangleSetup<'_>,
+        weights: &Weights,
+        x: f64,
+        y: f64,
+        depth: f32,
+    ) -> Vec3 {
+        self.normal(triangle, weights, &Texels { shader: self, triangle, x, y, depth })
+    }
+
+    fn normal(&self, triangle: &TriangleSetup<'_>, weights: &Weights, texels: &Texels<'_>) -> Vec3 {
+        match &self.materials[triangle.part.material].normal_texture {
+            Some(map) => self.mapped_normal(triangle, weights, map, texels),
+            None => triangle.normal(weights),
         }
     }
 

@@ -10,6 +10,7 @@ use senca_raster::{Counters, Ids, Primitives, Rasterizer, Shading, State, Target
 use senca_scene::Scene;
 use senca_shading::apply_fog;
 
+use crate::channel::Seen;
 use crate::geometry::{World, material_index};
 use crate::material::Model;
 use crate::shade::Shader;
@@ -105,12 +106,8 @@ impl Strokes {
     /// Colour of the line or point `index` at (x, y), pixels of the picture.
     pub(crate) fn shade(&self, shader: &Shader<'_>, index: usize, x: f64, y: f64) -> [f32; 4] {
         let stroke = self.list[index];
-        let placed = &shader.world.placed[stroke.placed as usize];
-        let mesh = &shader.world.meshes[placed.mesh];
-        let ends = stroke.ends.map(|v| mesh.position(v));
-        let clip_from_object = &shader.clip_from_object[stroke.placed as usize];
-        let pixels = ends.map(|p| shader.grid.homogeneous(clip_from_object, p.as_dvec3()));
-        let t = nearest_on_line(pixels.map(|p| (p.truncate(), p.z)), DVec2::new(x, y));
+        let mesh = &shader.world.meshes[shader.world.placed[stroke.placed as usize].mesh];
+        let (t, position) = stroke.nearest(shader, x, y);
         let vertex_color = |k: usize| {
             let colors = &mesh.vertices.color;
             colors.get(stroke.ends[k] as usize).copied().unwrap_or(Vec4::ONE)
@@ -122,12 +119,32 @@ impl Strokes {
             Model::MetallicRoughness { base_color, .. } => *base_color,
         };
         let color = base * LinearRgb::new(r, g, b) + material.emission;
-        let position: Vec3 = placed.world_from_object_f32.transform_point3(ends[0].lerp(ends[1], t));
         let LinearRgb { r, g, b } = match &shader.fog {
             Some(fog) => apply_fog(fog, color, shader.distance(position)),
             None => color,
         };
         [r, g, b, 1.0]
+    }
+
+    /// What is seen of the line or point `index` at (x, y).
+    pub(crate) fn seen(&self, shader: &Shader<'_>, index: usize, x: f64, y: f64) -> Seen {
+        let stroke = self.list[index];
+        let (_, position) = stroke.nearest(shader, x, y);
+        let id = shader.world.triangles + index as u32;
+        Seen { placed: stroke.placed as usize, id, position, normal: Vec3::ZERO }
+    }
+}
+
+impl Stroke {
+    /// The place that is seen nearest to (x, y): its parameter from end to end, and where it is in the
+    /// world.
+    fn nearest(&self, shader: &Shader<'_>, x: f64, y: f64) -> (f32, Vec3) {
+        let placed = &shader.world.placed[self.placed as usize];
+        let ends = self.ends.map(|v| shader.world.meshes[placed.mesh].position(v));
+        let clip_from_object = &shader.clip_from_object[self.placed as usize];
+        let pixels = ends.map(|p| shader.grid.homogeneous(clip_from_object, p.as_dvec3()));
+        let t = nearest_on_line(pixels.map(|p| (p.truncate(), p.z)), DVec2::new(x, y));
+        (t, placed.world_from_object_f32.transform_point3(ends[0].lerp(ends[1], t)))
     }
 }
 

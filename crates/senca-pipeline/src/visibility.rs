@@ -158,7 +158,17 @@ pub(crate) struct Pass<'a, 'w> {
     pub(crate) counters: Counters,
 }
 
-impl Pass<'_, '_> {
+impl<'a, 'w> Pass<'a, 'w> {
+    /// Nothing drawn yet.
+    pub(crate) fn new(
+        shader: &'a Shader<'w>,
+        window: &'a Window,
+        rasterizer: &'a mut dyn Rasterizer,
+        control: &'a Control<'a>,
+    ) -> Self {
+        Self { shader, window, rasterizer, control, counters: Counters::default() }
+    }
+
     /// State for `group`.
     fn state(&self, group: &Group) -> State {
         State { viewport: Some(self.window.viewport()), cull: group.cull, ..State::default() }

@@ -18,6 +18,7 @@
 //! ```
 
 mod error;
+mod false_color;
 mod line_drawing;
 mod prepare;
 mod render;
@@ -25,6 +26,7 @@ mod settings;
 mod traced;
 
 pub use error::Error;
+pub use false_color::false_color;
 pub use line_drawing::render_svg;
 pub use prepare::{Prepared, prepare};
 pub use render::{Report, render, render_with};

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use senca_math::{Image, View};
-use senca_pipeline::{Control, Culling, RenderError, Shading};
+use senca_pipeline::{Channel, Control, Culling, RenderError, Shading};
 use senca_scene::{Background, Camera, Scene};
 use senca_trace::path::{PathSettings, PathTracer};
 use senca_trace::recursive::{Backs, LightModel, RecursiveSettings, Tracer};
@@ -122,6 +122,10 @@ struct Shot<'s> {
 
 impl<'s> Shot<'s> {
     fn new(scene: &'s Scene, settings: &'s Settings) -> Result<Self, Error> {
+        if settings.drawing.channel != Channel::Color {
+            let text = "depth, normals and numbers are drawn by the method raster";
+            return Err(Error::Combination(text.into()));
+        }
         let prepared = prepare(Cow::Borrowed(scene), settings)?;
         let background = background(&prepared.scene, settings);
         let (drawing, tracing) = (&settings.drawing, &settings.tracing);

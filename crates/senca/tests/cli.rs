@@ -281,6 +281,31 @@ fn the_picture_does_not_depend_on_threads() {
 }
 
 #[test]
+fn depth_and_numbers_are_written_as_they_are_or_in_false_colours() {
+    let folder = folder();
+    let eye = ["render", "cube.obj", "--size", "9x9", "--eye", "0,0,5"];
+    let middle = |channel: &str| {
+        let done = run_in(folder.path(), &[&eye[..], &["-o", "c.pfm", "--channel", channel]].concat());
+        assert_exit(&done, 0, "");
+        let bytes = std::fs::read(folder.path().join("c.pfm")).expect("a picture");
+        let rows = &bytes[bytes.len() - 9 * 9 * 12..];
+        let at = (4 * 9 + 4) * 12;
+        std::array::from_fn(|k| f32::from_le_bytes(rows[at + 4 * k..][..4].try_into().expect("four bytes")))
+    };
+    assert_eq!(middle("objects"), [1.0; 3]);
+    assert_eq!(middle("normals"), [0.0, 0.0, 1.0]);
+    assert!(middle("depth").iter().all(|d| (d - 4.0f32).abs() < 1e-4));
+    assert!((1.0..=12.0).contains(&middle("triangles")[0]));
+
+    let with = |more: &[&str]| run_in(folder.path(), &[&eye[..], &["--channel", "depth"], more].concat());
+    assert_exit(&with(&["-o", "c.png"]), 0, "");
+    assert_exit(&with(&["-o", "c.svg"]), 2, "svg holds line drawings only");
+    assert_exit(&with(&["--samples", "4"]), 2, "one sample a pixel");
+    assert_exit(&with(&["--method", "trace"]), 2, "belongs to the method raster");
+    assert_exit(&with(&["--shading", "wire"]), 2, "nothing but color");
+}
+
+#[test]
 fn a_cut_out_is_that_part_of_the_whole_picture() {
     let folder = folder();
     let render = |more: &[&str], name: &str| {

@@ -63,6 +63,11 @@ pub(crate) struct OutputArguments {
     #[arg(long, value_name = "X,Y,W,H")]
     pub(crate) crop: Option<Crop>,
 
+    /// What pixels hold; all but color are drawn by the method raster, one sample a pixel, as numbers
+    /// in exr and pfm and as false colours elsewhere
+    #[arg(long, value_enum, value_name = "CHANNEL", default_value_t)]
+    pub(crate) channel: ChannelChoice,
+
     /// Colour where nothing is: #rrggbb, linear R,G,B, white, black, or none for transparent
     /// [default: the scene's]
     #[arg(long, value_name = "COLOR")]
@@ -180,6 +185,22 @@ fn method(text: &str) -> Result<Method, String> {
     }
 }
 
+/// What pixels hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ChannelChoice {
+    /// Light
+    #[default]
+    Color,
+    /// Distance from the eye along the axis of the view
+    Depth,
+    /// Unit normals in world coordinates
+    Normals,
+    /// The number of the object, from 1
+    Objects,
+    /// The number of the triangle, from 1
+    Triangles,
+}
+
 /// How surfaces look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ShadingChoice {
@@ -256,6 +277,8 @@ impl Arguments {
             return Err(Failure::usage("svg holds line drawings, which the method raster makes; write png"));
         }
         self.tracing.check(method)?;
+        self.check_channel(method)?;
+        let measures = self.output.channel != ChannelChoice::Color;
         let hinted = self.view.viewpoint().or_else(|| hints.camera.clone().map(Viewpoint::Camera));
         Ok(Settings {
             size: self.output.size.map(|s| [s.width, s.height]).or(hints.size),
@@ -267,7 +290,8 @@ impl Arguments {
             tracing: self.tracing(method, hints)?,
             drawing: pipeline::Settings {
                 shading: self.shading(method, shading)?,
-                samples: self.drawing.samples_per_pixel(method, hints.samples)?,
+                samples: if measures { 1 } else { self.drawing.samples_per_pixel(method, hints.samples)? },
+                channel: self.output.channel.into(),
                 background: self.output.background.map(Into::into),
                 ..self.drawing.settings()
             },
@@ -281,10 +305,31 @@ impl Arguments {
             Some(MethodHint::Path) => Method::Path,
             Some(MethodHint::Raster | MethodHint::Radiosity) | None => Method::Raster,
         };
-        // Lines and one rasterizer or the other ask for raster, whatever the scene says.
-        let lines = lines || self.drawing.shading.is_some_and(|s| Shading::from(s).is_lines());
+        // Lines, one rasterizer or the other, and what only it draws ask for raster, whatever the scene says.
+        let measures = self.output.channel != ChannelChoice::Color;
+        let lines = lines || measures || self.drawing.shading.is_some_and(|s| Shading::from(s).is_lines());
         let implied = (lines || self.drawing.raster.is_some()).then_some(Method::Raster);
         self.drawing.method.or(implied).unwrap_or(hinted)
+    }
+
+    /// Refuses what does not go with channels that are no colours.
+    fn check_channel(&self, method: Method) -> Result<(), Failure> {
+        if self.output.channel == ChannelChoice::Color {
+            return Ok(());
+        }
+        let lines = self.drawing.shading.is_some_and(|s| Shading::from(s).is_lines());
+        let several = self.drawing.samples.is_some_and(|n| n > 1)
+            || self.drawing.aa.is_some_and(|aa| aa != AntialiasingChoice::None);
+        match () {
+            () if method != Method::Raster => {
+                Err(Failure::usage("--channel belongs to the method raster; leave out --method"))
+            }
+            () if lines => Err(Failure::usage("line drawings hold nothing but color; leave out --shading")),
+            () if several => Err(Failure::usage(
+                "depth, normals and numbers have no mean: they take one sample a pixel, without --samples and --aa",
+            )),
+            () => Ok(()),
+        }
     }
 
     /// The shading; rays are shaded by the models of materials or all by the books', so what a scene
@@ -392,6 +437,18 @@ impl From<ShadingChoice> for Shading {
             ShadingChoice::Gouraud => Self::Gouraud,
             ShadingChoice::Phong => Self::Phong,
             ShadingChoice::Material => Self::Material,
+        }
+    }
+}
+
+impl From<ChannelChoice> for pipeline::Channel {
+    fn from(choice: ChannelChoice) -> Self {
+        match choice {
+            ChannelChoice::Color => Self::Color,
+            ChannelChoice::Depth => Self::Depth,
+            ChannelChoice::Normals => Self::Normals,
+            ChannelChoice::Objects => Self::Objects,
+            ChannelChoice::Triangles => Self::Triangles,
         }
     }
 }

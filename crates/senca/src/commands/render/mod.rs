@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use senca::io::toml_scene::{MethodHint, SceneFile};
-use senca::pipeline::{Control, RenderError};
+use senca::pipeline::{Channel, Control, RenderError};
 use senca::{Error, Report, Scene};
 
 pub(crate) use arguments::Arguments;
@@ -66,6 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => failure(&arguments.scene, &error),
     })?;
     if !running.quiet
+        && settings.drawing.channel == Channel::Color
         && let Some(stops) = drawn.image().and_then(exposure::stops_too_bright)
     {
         tell(&format!(

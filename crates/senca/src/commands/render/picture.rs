@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use senca::io::images::{PictureFormat, PictureOptions, encode};
 use senca::pipeline::{Control, Shading};
-use senca::{Error, Image, Method, Report, Scene, Settings, render_with};
+use senca::{Error, Image, Method, Report, Scene, Settings, false_color, render_with};
 
 use super::Arguments;
+use super::arguments::ChannelChoice;
 use super::partial::Partial;
 use crate::cli::output::{check_writable, default_name, is_standard};
 use crate::cli::{Failure, Interrupt};
@@ -51,6 +52,10 @@ impl Target {
             (None, _) => Format::Pixels(PictureFormat::Png),
         };
         let shows_faces = arguments.drawing.shading.is_some_and(|s| !Shading::from(s).is_lines());
+        let measures = wish.channel != ChannelChoice::Color;
+        if format == Format::Svg && measures {
+            return Err(Failure::usage("svg holds line drawings only; write --channel to exr, pfm or png"));
+        }
         if format == Format::Svg && shows_faces {
             return Err(Failure::usage(
                 "svg holds line drawings only; take --shading wire, wire-normals or hidden-line, or write png",
@@ -102,7 +107,11 @@ impl Target {
                 (Content::Pixels(traced.image, format), size, traced.report)
             }
             Format::Pixels(format) => {
-                let (image, report) = render_with(scene, settings, control)?;
+                let (mut image, report) = render_with(scene, settings, control)?;
+                // Formats of floats hold the numbers themselves.
+                if !matches!(format, PictureFormat::Exr | PictureFormat::Pfm) {
+                    false_color(&mut image, settings.drawing.channel);
+                }
                 let size = [image.width(), image.height()];
                 (Content::Pixels(image, format), size, report)
             }
