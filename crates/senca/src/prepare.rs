@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use senca_math::glam::DVec3;
-use senca_math::{View, world_from_look_at};
+use senca_math::{View, ViewError, world_from_look_at};
 use senca_scene::{
     AnimationId, Background, Camera, DEFAULT_YFOV, MaterialId, PlacedCamera, Projection, Scene, Shape,
     frame_bounds,
@@ -164,13 +164,18 @@ fn camera_of_caller(
     let bounds = scene.bounds();
     let target = wish.target.unwrap_or_else(|| bounds.center());
     let yfov = yfov.unwrap_or(DEFAULT_YFOV);
-    let up = wish.up.unwrap_or(DVec3::Y);
     let eye = wish.eye.unwrap_or_else(|| {
         let framed = frame_bounds(&bounds, aspect).world_from_camera.w_axis.truncate() - bounds.center();
         let nearer = (0.5 * DEFAULT_YFOV).tan() / (0.5 * yfov).tan();
         target + framed * nearer
     });
-    let world_from_camera = world_from_look_at(eye, target, up)?;
+    let world_from_camera = match (world_from_look_at(eye, target, wish.up.unwrap_or(DVec3::Y)), wish.up) {
+        // Straight down or up, and no word on what is up: the back of the scene is, or its front.
+        (Err(ViewError::VupParallelToVpn), None) => {
+            world_from_look_at(eye, target, DVec3::Z * (target.y - eye.y).signum())?
+        }
+        (placed, _) => placed?,
+    };
     let projection = Projection::Perspective { yfov, aspect: None, near: None, far: None };
     Ok(PlacedCamera { camera: Camera::new("", projection), world_from_camera })
 }

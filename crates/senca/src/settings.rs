@@ -81,7 +81,7 @@ pub struct LookAt {
     pub eye: Option<DVec3>,
     /// The point looked at. Default: the centre of the scene.
     pub target: Option<DVec3>,
-    /// What is up in the picture. Default: +y.
+    /// What is up in the picture. Default: +y; -z for an eye that looks straight down, +z straight up.
     pub up: Option<DVec3>,
 }
 

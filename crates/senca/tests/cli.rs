@@ -306,6 +306,30 @@ fn depth_and_numbers_are_written_as_they_are_or_in_false_colours() {
 }
 
 #[test]
+fn an_eye_may_look_straight_down() {
+    let folder = folder();
+    for eye in ["0,6,0", "0,-6,0"] {
+        let done = run_in(folder.path(), &["render", "cube.obj", "--size", "9x9", "--eye", eye]);
+        assert_exit(&done, 0, "");
+        assert!(done.stderr.is_empty(), "{}", told(&done));
+    }
+    let up = run_in(folder.path(), &["render", "cube.obj", "--eye", "0,6,0", "--up", "0,1,0"]);
+    assert_exit(&up, 1, "parallel");
+}
+
+#[test]
+fn a_picture_of_nothing_is_told() {
+    let folder = folder();
+    let away = run_in(
+        folder.path(),
+        &["render", "cube.obj", "--size", "9x9", "--eye", "0,0,5", "--target", "0,0,9"],
+    );
+    assert_exit(&away, 0, "nothing of the scene is in the picture");
+    std::fs::write(folder.path().join("blank.glb"), " \n").expect("a file");
+    assert_exit(&run_in(folder.path(), &["render", "blank.glb"]), 1, "blank.glb: is empty; readable are");
+}
+
+#[test]
 fn a_cut_out_is_that_part_of_the_whole_picture() {
     let folder = folder();
     let render = |more: &[&str], name: &str| {

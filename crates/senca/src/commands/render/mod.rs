@@ -12,7 +12,7 @@ use std::path::Path;
 
 use senca::io::toml_scene::{MethodHint, SceneFile};
 use senca::pipeline::{Channel, Control, RenderError};
-use senca::{Error, Report, Scene};
+use senca::{Error, Method, Report, Scene, Settings};
 
 pub(crate) use arguments::Arguments;
 use arguments::shading_of_hint;
@@ -65,6 +65,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Error::Partial(_) => Failure::input(format!("{}: {error}", partial.name())),
         _ => failure(&arguments.scene, &error),
     })?;
+    if !running.quiet && shows_nothing(&settings, &drawn.report) {
+        tell(&format!(
+            "senca: {}: warning: nothing of the scene is in the picture",
+            arguments.scene.display()
+        ));
+    }
     if !running.quiet
         && settings.drawing.channel == Channel::Color
         && let Some(stops) = drawn.image().and_then(exposure::stops_too_bright)
@@ -99,6 +105,12 @@ fn check_crop(arguments: &Arguments) -> Result<(), Failure> {
         ))),
         _ => Ok(()),
     }
+}
+
+/// Whether faces were asked for, and no pixel of the whole picture shows one.
+fn shows_nothing(settings: &Settings, report: &Report) -> bool {
+    let whole = settings.method == Method::Raster && settings.crop.is_none();
+    whole && !settings.drawing.shading.is_lines() && report.drawing.pixels_shaded == 0
 }
 
 /// Says that the scene's own method is not there, where it is not.
