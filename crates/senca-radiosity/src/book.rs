@@ -31,6 +31,8 @@ mod rows;
 mod settings;
 
 #[cfg(test)]
+mod cornell_tests;
+#[cfg(test)]
 mod tests;
 
 use senca_math::{Control, LinearRgb};

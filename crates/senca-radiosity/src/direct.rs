@@ -8,7 +8,7 @@
 //! | what | how it lights |
 //! |---|---|
 //! | point, spot, parallel, box | as the lamp says, with one shadow ray to each place of an element |
-//! | area | from the centres of equal cells, each with the cosine of the angle from the axis, so with the radiance that the path tracer gives it |
+//! | area | with the radiance that the path tracer gives it: by Lambert's formula where that is the same from everywhere, and the share of equal cells that are seen |
 //! | background colour, gradient | from all around, by directions that are spread as the cosine weighs them |
 //! | environment | by the middles of regions of equal light (median cut, Debevec 2005) |
 //! | ambient light | not at all: it stands for what surfaces send each other, and that is computed |
@@ -24,6 +24,7 @@ use senca_math::{Control, LinearRgb};
 use senca_scene::{Attenuation, LightKind, Scene};
 use senca_shading::{Lamp, ShadingLight, distance_attenuation};
 
+use crate::form_factor::point_to_polygon;
 use crate::{ElementMesh, Occluders, PatchPolygon, RadiosityError};
 use sky::Sky;
 pub(crate) use sky::cosine_direction;
@@ -301,11 +302,12 @@ impl Rectangle {
         (shape, self.color * (std::f64::consts::PI / area) as f32)
     }
 
+    /// Plain lamps by Lambert's formula times the share of their cells that is seen, others cell by cell.
     fn at(&self, occluders: &Occluders, place: DVec3, normal: DVec3, cells: u32) -> LinearRgb {
-        let share = 1.0 / f64::from(cells);
-        let mut sum = LinearRgb::BLACK;
+        let mut all = 0.0;
+        let mut seen = LinearRgb::BLACK;
         for cell in 0..cells * cells {
-            let [u, v] = [cell % cells, cell / cells].map(|i| (f64::from(i) + 0.5) * share - 0.5);
+            let [u, v] = [cell % cells, cell / cells].map(|i| (f64::from(i) + 0.5) / f64::from(cells) - 0.5);
             let source = self.middle + u * self.edges[0] + v * self.edges[1];
             let way = source - place;
             let distance = way.length();
@@ -314,11 +316,16 @@ impl Rectangle {
                 continue;
             }
             let falloff = f64::from(distance_attenuation(&self.attenuation, distance as f32));
-            let cosines = here * there / (distance * distance);
-            let passed = occluders.transmittance(place, source);
-            sum += passed * (falloff * cosines * share * share) as f32;
+            let weight = falloff * here * there / (distance * distance);
+            all += weight;
+            seen += occluders.transmittance(place, source) * weight as f32;
         }
-        self.color * sum
+        if self.attenuation != (Attenuation::InverseSquare { range: None }) || all <= 0.0 {
+            return self.color * seen * f64::from(cells * cells).recip() as f32;
+        }
+        let (shape, shows) = self.as_emitter();
+        let factor = point_to_polygon(place, normal, shape.corners());
+        shows * seen * (factor / all) as f32
     }
 }
 

@@ -272,6 +272,22 @@ fn lamps_of_the_scene_light_it() {
 }
 
 #[test]
+fn light_does_not_depend_on_the_view() {
+    let solved = |eye: DVec3| {
+        let mut scene = lamp_over_table();
+        let projection =
+            senca_scene::Projection::Perspective { yfov: 1.0, aspect: None, near: None, far: None };
+        scene.cameras.push(senca_scene::Camera::new("eye", projection));
+        let transform = senca_scene::Transform::Matrix(senca_math::glam::DMat4::from_translation(eye));
+        let camera = Some(senca_scene::CameraId(0));
+        let node = scene.add_node(Node { camera, transform, ..Node::default() });
+        scene.roots.push(node);
+        solve(&scene, &BookSettings::default(), &Control::default()).expect("solved")
+    };
+    assert_eq!(solved(DVec3::ONE), solved(DVec3::new(-7.0, 2.0, 0.5)));
+}
+
+#[test]
 fn interrupting_keeps_the_best_so_far() {
     let mut mesh = mesh_of(&furnished(0.6, 0.0, 5.0));
     mesh.divide_to_size(0.7, 1 << 20).expect("few");

@@ -91,12 +91,12 @@ fn an_area_light_is_the_form_factor_it_has() {
     let lamp = DMat4::from_translation(DVec3::Y) * DMat4::from_rotation_x(-FRAC_PI_2);
     scene.nodes[0].transform = Transform::Matrix(lamp);
     let quads = [rectangle([-0.5, 0.5], 0.0, [-0.5, 0.5])];
-    let settings = DirectSettings { area_cells: 32, ..DirectSettings::default() };
+    let settings = DirectSettings::default();
     let mesh = mesh(&quads);
     let occluders = Occluders::new(&mesh).expect("few");
     let light = DirectLight::of_scene(&scene, &settings).expect("in range");
     let found = f64::from(light.at(&occluders, DVec3::ZERO, DVec3::Y).r);
-    assert!((found - PI * 0.239_456_470_5).abs() < 1e-3, "{found}");
+    assert!((found - PI * 0.239_456_470_5).abs() < 1e-6, "{found}");
 }
 
 #[test]
