@@ -413,7 +413,6 @@ pub trait Rasterizer {
     ) -> Counters;
 
     /// Draws lines, in order. The end of a line is not drawn, so that joined lines share no pixel.
-    /// Unless told otherwise, one fragment after another on one thread.
     fn draw_lines(
         &mut self,
         target: &mut Target<'_>,
@@ -421,10 +420,10 @@ pub trait Rasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        crate::lines::draw_lines(target, lines, state, shading)
+        crate::lines::draw_lines(target, lines, state, shading, self.threads())
     }
 
-    /// Draws points as squares, in order. Unless told otherwise, as [`Self::draw_lines`].
+    /// Draws points as squares, in order.
     fn draw_points(
         &mut self,
         target: &mut Target<'_>,
@@ -432,7 +431,13 @@ pub trait Rasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        crate::lines::draw_points(target, points, state, shading)
+        crate::lines::draw_points(target, points, state, shading, self.threads())
+    }
+
+    /// Threads that lines and points are drawn on. Default 1: one fragment after another.
+    #[must_use]
+    fn threads(&self) -> usize {
+        1
     }
 }
 

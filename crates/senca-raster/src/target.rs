@@ -39,6 +39,16 @@ pub enum ColorPlane<'a> {
     Rgba8(&'a mut [[u8; 4]]),
 }
 
+impl ColorPlane<'_> {
+    /// Pieces of `pixels` pixels, the last with what is left.
+    fn strips(&mut self, pixels: usize) -> Vec<ColorPlane<'_>> {
+        match self {
+            Self::Rgba32F(plane) => plane.chunks_mut(pixels).map(ColorPlane::Rgba32F).collect(),
+            Self::Rgba8(plane) => plane.chunks_mut(pixels).map(ColorPlane::Rgba8).collect(),
+        }
+    }
+}
+
 /// What a draw writes to: any combination of colour, depth and identifiers, of one size.
 #[derive(Debug)]
 pub struct Target<'a> {
@@ -117,6 +127,23 @@ impl<'a> Target<'a> {
         self.check(ids.len())?;
         self.ids = Some(ids);
         Ok(self)
+    }
+
+    /// Strips of `rows` rows, > 0, from top to bottom; the last has what is left.
+    pub(crate) fn strips(&mut self, rows: usize) -> Vec<Target<'_>> {
+        let (width, height) = (self.width, self.height as usize);
+        let pixels = (rows * width as usize).max(1);
+        let mut color = self.color.as_mut().map(|plane| plane.strips(pixels).into_iter());
+        let mut depth = self.depth.as_mut().map(|plane| plane.chunks_mut(pixels));
+        let mut ids = self.ids.as_mut().map(|plane| plane.chunks_mut(pixels));
+        let strip = |i: usize| Target {
+            width,
+            height: rows.min(height - i * rows) as u32,
+            color: color.as_mut().and_then(Iterator::next),
+            depth: depth.as_mut().and_then(Iterator::next),
+            ids: ids.as_mut().and_then(Iterator::next),
+        };
+        (0..height.div_ceil(rows)).map(strip).collect()
     }
 
     fn check(&self, found: usize) -> Result<(), TargetError> {

@@ -62,13 +62,6 @@ impl TiledRasterizer {
             + self.runs.iter().map(Run::bytes).sum::<usize>()
             + self.scratch.len() * per_thread
     }
-
-    fn threads(&self) -> usize {
-        match self.settings.threads {
-            0 => rayon::current_num_threads(),
-            n => n,
-        }
-    }
 }
 
 impl Rasterizer for TiledRasterizer {
@@ -118,6 +111,13 @@ impl Rasterizer for TiledRasterizer {
             counters.shaded += c.shaded;
         }
         counters
+    }
+
+    fn threads(&self) -> usize {
+        match self.settings.threads {
+            0 => rayon::current_num_threads(),
+            n => n,
+        }
     }
 }
 

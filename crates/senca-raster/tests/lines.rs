@@ -3,7 +3,7 @@
 use senca_math::glam::Vec4;
 use senca_raster::{
     Blend, Buffers, Compare, Ids, Interpolation, Primitives, Rasterizer, ScanlineRasterizer, Shading, State,
-    TiledRasterizer,
+    TiledRasterizer, TiledSettings,
 };
 
 const SIDE: u32 = 16;
@@ -109,5 +109,48 @@ fn lines_have_depth_and_perspective() {
         assert_eq!((c.primitives, c.drawn, c.passed), (1, 1, 100));
         assert!((buffers.color.pixel(50, 0)[0] - middle).abs() < 0.01);
         assert!((buffers.depth[50] - 0.5).abs() < 0.01);
+    }
+}
+
+/// Scattered places, some outside the view volume or behind the eye.
+fn scattered(count: u32) -> Vec<Vec4> {
+    let mut state = 1u32;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    };
+    (0..count)
+        .map(|_| {
+            let w = 4.0 * next() - 0.5;
+            let [x, y] = [2.6 * next() - 1.3, 2.6 * next() - 1.3];
+            Vec4::new(x * w, y * w, next() * w, w)
+        })
+        .collect()
+}
+
+#[test]
+fn any_number_of_threads_draws_the_same() {
+    let places = scattered(1500);
+    let indices: Vec<u32> = (0..1500).collect();
+    let colors: Vec<f32> = (0..1500 * 3).map(|i| (i % 97) as f32 / 96.0).collect();
+    let p =
+        Primitives { positions: &places, varyings: &colors, stride: 3, indices: &indices, ids: Ids::From(7) };
+    for (width, height) in [(61, 47), (1, 90), (90, 1), (1, 1)] {
+        for (size, blend) in [(1.0, None), (5.0, Some(Blend::MULTIPLY)), (2.0, Some(Blend::ADD))] {
+            let scissor = (size == 5.0).then_some(senca_raster::Rect { x: 3, y: 5, width: 40, height: 30 });
+            let state = State { line_width: size, point_size: size, blend, scissor, ..State::default() };
+            let draw = |rasterizer: &mut dyn Rasterizer| {
+                let mut buffers = Buffers::with_ids(width, height);
+                let mut target = buffers.target().unwrap();
+                let lines = rasterizer.draw_lines(&mut target, &p, &state, &Shading::vertex_rgb());
+                let points = rasterizer.draw_points(&mut target, &p, &state, &Shading::vertex_rgb());
+                (buffers.color, buffers.depth, buffers.ids, lines, points)
+            };
+            let plain = draw(&mut ScanlineRasterizer);
+            for threads in [1, 2, 3, 7] {
+                let settings = TiledSettings { threads, ..TiledSettings::default() };
+                assert!(draw(&mut TiledRasterizer::new(settings)) == plain, "{width}x{height}, {threads}");
+            }
+        }
     }
 }
