@@ -140,7 +140,7 @@ mod tests {
             Shape::Disc { radius: 2.0, inner_radius: 1.0 },
             Shape::Plane { size: Some(3.0) },
             Shape::Prism { base: base.clone(), height: 1.0, capped: true },
-            Shape::Revolution { profile: base, bezier: false, angle: std::f64::consts::TAU },
+            Shape::Revolution { profile: base, bezier: false, angle: std::f64::consts::TAU, capped: true },
         ]
     }
 

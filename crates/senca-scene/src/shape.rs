@@ -94,6 +94,10 @@ pub enum Shape {
         bezier: bool,
         /// Angle swept, in radians, in (0, 2 pi].
         angle: f64,
+        /// Whether the ends of less than a full turn are closed by flat sides, so that it bounds a body.
+        /// Only where the profile encloses an area, alone or with the axis: its last point is the
+        /// first, or both are on the axis. Of other profiles the ends stay open.
+        capped: bool,
     },
     /// Bicubic Bézier patches.
     BezierPatches {

@@ -55,8 +55,8 @@ fn shapes() -> Vec<(&'static str, Shape)> {
             Shape::Polygon { outline: star().iter().map(|p| p.extend(0.0)).collect(), holes: vec![] },
         ),
         ("prism", Shape::Prism { base: star(), height: 1.0, capped: true }),
-        ("lathe", Shape::Revolution { profile: vase(), bezier: false, angle: tau }),
-        ("bezier lathe", Shape::Revolution { profile: vase(), bezier: true, angle: tau }),
+        ("lathe", Shape::Revolution { profile: vase(), bezier: false, angle: tau, capped: true }),
+        ("bezier lathe", Shape::Revolution { profile: vase(), bezier: true, angle: tau, capped: true }),
     ]
 }
 

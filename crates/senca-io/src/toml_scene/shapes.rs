@@ -235,7 +235,8 @@ fn revolution(table: &mut Table<'_>) -> Result<ReadShape> {
         return Err(value.refuse("needs at least two points"));
     }
     let angle = table.read_or("angle", TAU, |value| value.angle(0.0, 360.0))?;
-    Ok(Shape::Revolution { profile, bezier, angle }.into())
+    let capped = table.read_or("capped", true, Value::boolean)?;
+    Ok(Shape::Revolution { profile, bezier, angle, capped }.into())
 }
 
 /// `expression` within the box from `min` to `max`.

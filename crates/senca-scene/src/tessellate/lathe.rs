@@ -58,7 +58,7 @@ pub(super) struct Lathe {
 
 impl Lathe {
     /// Whether the last column is the first again.
-    fn is_closed(&self) -> bool {
+    pub(super) fn is_closed(&self) -> bool {
         self.sweep >= TAU * (1.0 - 1e-12)
     }
 
@@ -68,8 +68,9 @@ impl Lathe {
         DVec3::new(cos, 0.0, -sin)
     }
 
-    /// Turns all runs and appends them.
-    pub(super) fn build(&self, b: &mut Builder) {
+    /// Turns all runs and appends them. Returns the first point of each ring; of less than a full turn, a
+    /// ring away from the axis has `steps + 1`.
+    pub(super) fn build(&self, b: &mut Builder) -> Vec<u32> {
         let radials = self.radials();
         let first_points: Vec<u32> = self.rings.iter().map(|&ring| add_ring(ring, &radials, b)).collect();
         for run in &self.runs {
@@ -83,6 +84,7 @@ impl Lathe {
                 self.add_band([samples[0], samples[1]], [rows[0], rows[1]], surface, b);
             }
         }
+        first_points
     }
 
     /// Directions of all columns; a full turn does not repeat the first.

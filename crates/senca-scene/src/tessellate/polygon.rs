@@ -128,7 +128,7 @@ fn fitting(ring: &[DVec2]) -> impl Fn(DVec2) -> DVec2 + use<> {
 }
 
 /// Adds the faces of a flat region whose vertices begin at `first`, turned over if `back`.
-fn add_flat(rings: &[Vec<DVec2>], first: u32, back: bool, surface: u32, b: &mut Builder) {
+pub(super) fn add_flat(rings: &[Vec<DVec2>], first: u32, back: bool, surface: u32, b: &mut Builder) {
     let turned = |mut corners: Vec<u32>| {
         if back {
             corners.reverse();

@@ -3,14 +3,19 @@
 //! The profile is cut into pieces (segments of a polyline, cubic Bézier pieces). Where it turns by
 //! more than [`CREASE`] from one piece to the next, or touches the axis, a new surface begins; else
 //! both sides share the mean normal. So a polyline of many points looks smooth, and a cup keeps its rim.
+//!
+//! Less than a full turn of a profile that encloses an area, alone or with the axis, can be closed by a flat
+//! side at either end.
 
 use std::f64::consts::TAU;
 
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3};
+use senca_math::polygon::signed_area;
 
 use super::build::Builder;
 use super::lathe::{Lathe, Run, Sample, Wrapping};
+use super::polygon::add_flat;
 use super::solids::{MAX_AROUND, along, around, chord_steps, within_budget};
 use super::{MAX_FACES, ShapeError, TessellationSettings, positive};
 
@@ -27,6 +32,7 @@ pub(super) fn revolution(
     profile: &[DVec2],
     bezier: bool,
     angle: f64,
+    capped: bool,
     settings: &TessellationSettings,
     b: &mut Builder,
 ) -> Result<(), ShapeError> {
@@ -53,8 +59,54 @@ pub(super) fn revolution(
     }
     let rows = (rings.len() as u64).min(MAX_FACES) as u32;
     let (steps, _) = within_budget(steps, rows, (3, 1));
-    Lathe { rings, runs, start: 0.0, sweep: angle.min(TAU), steps }.build(b);
+    let encloses = rings_close(&pieces, &rings);
+    let lathe = Lathe { rings, runs, start: 0.0, sweep: angle.min(TAU), steps };
+    let first_points = lathe.build(b);
+    if capped && encloses && !lathe.is_closed() {
+        add_ends(&lathe, &first_points, &bounds, b);
+    }
     Ok(())
+}
+
+/// Whether the profile's last point is its first, or both are on the axis.
+fn rings_close(pieces: &[Piece], rings: &[DVec2]) -> bool {
+    let sample = |piece: Option<&Piece>, last: bool| {
+        piece.and_then(|p| if last { p.samples.last() } else { p.samples.first() }).map(|s| s.0)
+    };
+    let on_axis = |ring: Option<&DVec2>| ring.is_some_and(|p| p.x == 0.0);
+    sample(pieces.first(), false) == sample(pieces.last(), true)
+        || on_axis(rings.first()) && on_axis(rings.last())
+}
+
+/// The flat sides at both ends of less than a full turn, which face as the profile's direction says.
+/// Pictures are upright seen from outside, from the axis to the largest radius of `bounds`.
+fn add_ends(lathe: &Lathe, first_points: &[u32], bounds: &Aabb, b: &mut Builder) {
+    let area = signed_area(&lathe.rings);
+    let (radius, height) = (bounds.max.x, bounds.max.y - bounds.min.y);
+    if area.abs() <= 1e-12 * radius * height {
+        return;
+    }
+    let inside_out = area < 0.0;
+    let mut corners: Vec<(DVec2, u32)> =
+        lathe.rings.iter().copied().zip(first_points.iter().copied()).collect();
+    if inside_out {
+        corners.reverse();
+    }
+    let ring: Vec<DVec2> = corners.iter().map(|corner| corner.0).collect();
+    for (name, is_end) in [("start", false), ("end", true)] {
+        let surface = b.surface(name);
+        let (sin, cos) = if is_end { lathe.sweep.sin_cos() } else { (0.0, 1.0) };
+        let outward = if is_end == inside_out { 1.0 } else { -1.0 };
+        let normal = outward * DVec3::new(sin, 0.0, cos);
+        let first = b.mesh.vertices.point.len() as u32;
+        for &(place, point) in &corners {
+            let column = if is_end && place.x != 0.0 { lathe.steps } else { 0 };
+            let share = place.x / radius;
+            let u = if is_end { 1.0 - share } else { share };
+            b.vertex(point + column, normal, DVec2::new(u, (bounds.max.y - place.y) / height));
+        }
+        add_flat(std::slice::from_ref(&ring), first, is_end != inside_out, surface, b);
+    }
 }
 
 fn check(profile: &[DVec2], bezier: bool, angle: f64) -> Result<(), ShapeError> {

@@ -59,8 +59,8 @@ pub(super) fn mesh_of(shape: &Shape, settings: &TessellationSettings) -> Result<
         Shape::Plane { size } => plane(*size, settings, b)?,
         Shape::Polygon { outline, holes } => polygon::polygon(outline, holes, b)?,
         Shape::Prism { base, height, capped } => polygon::prism(base, *height, *capped, b)?,
-        Shape::Revolution { profile, bezier, angle } => {
-            revolution::revolution(profile, *bezier, *angle, settings, b)?;
+        Shape::Revolution { profile, bezier, angle, capped } => {
+            revolution::revolution(profile, *bezier, *angle, *capped, settings, b)?;
         }
         Shape::BezierPatches { patches } => patches::bezier_patches(patches, settings, b)?,
         Shape::Nurbs(surface) => nurbs::nurbs(surface, settings, b)?,

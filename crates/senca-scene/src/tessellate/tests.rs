@@ -55,8 +55,12 @@ fn closed_shapes() -> Vec<(&'static str, Shape, i64, f64)> {
     let ball = [(0.0, -1.0), (k, -1.0), (1.0, -k), (1.0, 0.0), (1.0, k), (k, 1.0), (0.0, 1.0)]
         .map(|(x, y)| DVec2::new(x, y));
     let diamond = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y));
-    let revolved =
-        |profile: &[DVec2], bezier| Shape::Revolution { profile: profile.to_vec(), bezier, angle: TAU };
+    let revolved = |profile: &[DVec2], bezier| Shape::Revolution {
+        profile: profile.to_vec(),
+        bezier,
+        angle: TAU,
+        capped: true,
+    };
     vec![
         ("sphere", Shape::Sphere { radius: 2.0 }, 2, 32.0 / 3.0 * PI),
         ("ellipsoid", Shape::Ellipsoid { radii: DVec3::new(1.0, 2.0, 3.0) }, 2, 8.0 * PI),
@@ -153,7 +157,7 @@ proptest! {
             Shape::Plane { size: Some(a) },
             Shape::Polygon { outline: vec![DVec3::new(a, b, c), DVec3::new(b, c, a), DVec3::new(c, a, b)], holes: vec![] },
             Shape::Prism { base: profile.clone(), height: a, capped: true },
-            Shape::Revolution { profile, bezier: false, angle: b },
+            Shape::Revolution { profile, bezier: false, angle: b, capped: true },
         ];
         let size = a.abs().max(b.abs()).max(c.abs());
         let coarse =
@@ -195,7 +199,10 @@ fn creases_are_borders_of_surfaces() {
     let cube = mesh_at(&Shape::Box { size: DVec3::ONE }, Tolerance::World(0.1));
     assert_eq!((cube.points.len(), cube.vertices.point.len(), cube.surfaces.len()), (8, 24, 6));
     let cup = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (1.05, 2.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
-    let cup = mesh_at(&Shape::Revolution { profile: cup, bezier: false, angle: TAU }, Tolerance::World(0.01));
+    let cup = mesh_at(
+        &Shape::Revolution { profile: cup, bezier: false, angle: TAU, capped: true },
+        Tolerance::World(0.01),
+    );
     assert_eq!(cup.surfaces.len(), 2, "a crease at the foot, none at the slight turn");
 }
 
@@ -221,11 +228,48 @@ fn textures_stand_upright() {
 #[test]
 fn partial_turns_sweep_from_x_towards_minus_z() {
     let profile = vec![DVec2::new(1.0, 0.0), DVec2::new(1.0, 1.0)];
-    let quarter = Shape::Revolution { profile, bezier: false, angle: PI / 2.0 };
+    let quarter = Shape::Revolution { profile, bezier: false, angle: PI / 2.0, capped: true };
     let mesh = mesh_at(&quarter, Tolerance::World(1e-3));
     assert!((mesh.area() - PI / 2.0).abs() < 3e-3);
     assert!(mesh.points.iter().all(|p| p.x > -1e-6 && p.z < 1e-6));
     assert_normals_fit(&mesh, "quarter");
+}
+
+#[test]
+fn the_ends_of_partial_turns_close_what_can_be_closed() {
+    let points = |list: &[(f64, f64)]| list.iter().map(|&(x, y)| DVec2::new(x, y)).collect::<Vec<_>>();
+    let ring = points(&[(1.0, 0.0), (2.0, 0.0), (2.0, 0.5), (1.5, 0.2), (1.0, 1.0), (1.0, 0.0)]);
+    let spool = points(&[(0.0, 0.0), (1.0, 0.0), (0.3, 1.0), (1.0, 2.0), (0.0, 2.0)]);
+    let cup = points(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]);
+    let reversed = |profile: &[DVec2]| profile.iter().rev().copied().collect::<Vec<_>>();
+    for angle in [0.5, PI, 4.0] {
+        let turned = |profile: &[DVec2], capped| Shape::Revolution {
+            profile: profile.to_vec(),
+            bezier: false,
+            angle,
+            capped,
+        };
+        for profile in [&ring, &spool] {
+            let mesh = mesh_at(&turned(profile, true), Tolerance::World(1e-4));
+            assert_normals_fit(&mesh, "capped");
+            let topology = crate::Topology::new(&mesh);
+            assert!(topology.is_closed() && topology.is_oriented(), "{angle} {profile:?}");
+            let full =
+                Shape::Revolution { profile: profile.clone(), bezier: false, angle: TAU, capped: true };
+            let whole = mesh_at(&full, Tolerance::World(1e-4)).signed_volume();
+            let share = mesh.signed_volume() / whole;
+            assert!((share - angle / TAU).abs() < 1e-3, "{share} of a turn by {angle}");
+            assert!(turned(profile, true).check_closed().is_ok());
+            assert!(turned(profile, false).check_closed().is_err());
+            let inside_out = mesh_at(&turned(&reversed(profile), true), Tolerance::World(1e-4));
+            assert!(crate::Topology::new(&inside_out).is_oriented());
+            assert!((inside_out.signed_volume() + mesh.signed_volume()).abs() < 1e-3);
+        }
+        // The cup's wall has no inside: nothing to close.
+        let [open, asked] =
+            [false, true].map(|capped| mesh_at(&turned(&cup, capped), Tolerance::World(1e-2)));
+        assert_eq!(open, asked);
+    }
 }
 
 #[test]
@@ -481,9 +525,12 @@ fn bad_parameters_are_named() {
     assert!(error(Shape::Disc { radius: 1.0, inner_radius: 2.0 }).contains("below the outer radius"));
     let profile = vec![DVec2::ONE; 3];
     assert!(
-        error(Shape::Revolution { profile: profile.clone(), bezier: true, angle: 1.0 }).contains("3 n + 1")
+        error(Shape::Revolution { profile: profile.clone(), bezier: true, angle: 1.0, capped: true })
+            .contains("3 n + 1")
     );
-    assert!(error(Shape::Revolution { profile, bezier: false, angle: 1.0 }).contains("no length"));
+    assert!(
+        error(Shape::Revolution { profile, bezier: false, angle: 1.0, capped: true }).contains("no length")
+    );
     assert!(error(Shape::Sphere { radius: 1e200 }).contains("too large"));
 }
 

@@ -64,7 +64,9 @@ pub fn surface_of<'s>(
             };
             Box::new(prism)
         }
-        Shape::Revolution { profile, bezier, angle } => Box::new(Revolution::new(profile, *bezier, *angle)?),
+        Shape::Revolution { profile, bezier, angle, capped } => {
+            Box::new(Revolution::new(profile, *bezier, *angle, *capped)?)
+        }
     })
 }
 

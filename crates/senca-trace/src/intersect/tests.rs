@@ -70,7 +70,7 @@ fn implicit_shapes() -> Vec<Shape> {
 }
 
 fn revolution(profile: Vec<DVec2>, bezier: bool, angle: f64) -> Shape {
-    Shape::Revolution { profile, bezier, angle }
+    Shape::Revolution { profile, bezier, angle, capped: true }
 }
 
 /// Closed bodies with their volumes.
@@ -95,9 +95,12 @@ fn bodies() -> Vec<(Shape, f64)> {
         (Shape::Torus { major_radius: 1.0, minor_radius: 0.35 }, 2.0 * PI * PI * 0.35f64.powi(2)),
         (Shape::Prism { base: star(5), height: 0.9, capped: true }, 0.9 * star_area),
         (revolution(spool, false, TAU), cone(1.0, 0.3, 1.0) + cone(0.3, 1.2, 1.0)),
-        (revolution(ring, false, TAU), ring_volume),
+        (revolution(ring.clone(), false, TAU), ring_volume),
         // The cubic pieces reach out of the ball by less than 3e-4.
         (revolution(ball_profile(), true, TAU), 4.0 / 3.0 * PI),
+        (revolution(ball_profile(), true, 4.0), 8.0 / 3.0),
+        (revolution(ball_profile(), true, PI), 2.0 / 3.0 * PI),
+        (revolution(ring, false, 1.2), ring_volume * 1.2 / TAU),
     ]
 }
 

@@ -134,7 +134,7 @@ fn sweeps_keep_their_outlines() {
     assert_eq!(prism, Shape::Prism { base, height: 2.0, capped: false });
     let (turned, _) = shape("shape = 'revolution'\nprofile = [[1,0],[2,1]]\nangle = 90");
     let profile = vec![DVec2::X, DVec2::new(2.0, 1.0)];
-    assert_eq!(turned, Shape::Revolution { profile, bezier: false, angle: FRAC_PI_2 });
+    assert_eq!(turned, Shape::Revolution { profile, bezier: false, angle: FRAC_PI_2, capped: true });
     let (polygon, _) =
         shape("shape = 'polygon'\npoints = [[0,0,0],[9,0,0],[0,9,0]]\nholes = [[[1,1,0],[1,2,0],[2,1,0]]]");
     let Shape::Polygon { outline, holes } = polygon else { panic!("a polygon") };

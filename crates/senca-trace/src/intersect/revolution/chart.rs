@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use senca_math::glam::{DVec2, DVec3};
 
-use super::Revolution;
+use super::{Ends, Revolution};
 use crate::intersect::analytic::{Chart, turn_from_x};
 use crate::{Crossing, SurfacePoint};
 
@@ -15,6 +15,10 @@ pub(super) fn angle_of(place: DVec3) -> f64 {
 
 /// The picture lies once over the swept angle, and from the profile's last point down to its first.
 pub(super) fn surface_point(surface: &Revolution, near: DVec3, crossing: &Crossing) -> SurfacePoint {
+    let end = (crossing.part as usize).checked_sub(surface.pieces.len());
+    if let (Some(end), Some(ends)) = (end, &surface.ends) {
+        return end_point(surface, ends, end.min(1), near);
+    }
     let piece = &surface.pieces[crossing.part as usize % surface.pieces.len()];
     let s = crossing.uv.y;
     let across = near.x.hypot(near.z);
@@ -35,4 +39,25 @@ pub(super) fn surface_point(surface: &Revolution, near: DVec3, crossing: &Crossi
         met.shading_normal = turned(first.lerp(second, s)).normalize_or(normal);
     }
     met
+}
+
+/// A point of the flat side at the start (0) or end (1). The picture is upright seen from outside, from the
+/// axis to the largest radius.
+fn end_point(surface: &Revolution, ends: &Ends, end: usize, near: DVec3) -> SurfacePoint {
+    let flat = ends.wedge.along[end];
+    let along = DVec3::new(flat.x, 0.0, flat.y);
+    let radius = along.dot(near).max(0.0);
+    let point = along * radius + DVec3::Y * near.y;
+    let outward = if (end == 1) == ends.inside_out { 1.0 } else { -1.0 };
+    // The start faces +z, and the end the other way after its turn.
+    let normal = outward * along.cross(DVec3::Y);
+    let (largest, height) = (surface.bounds.max.x, surface.bounds.max.y - surface.bounds.min.y);
+    let share = radius / largest;
+    let chart = Chart {
+        uv: DVec2::new(if end == 1 { 1.0 - share } else { share }, (surface.bounds.max.y - near.y) / height),
+        along_u: along * if end == 1 { -largest } else { largest },
+        along_v: DVec3::NEG_Y * height,
+    };
+    let runs = surface.pieces.last().map_or(0, |piece| piece.run + 1);
+    chart.at(point, normal, runs + end as u32)
 }

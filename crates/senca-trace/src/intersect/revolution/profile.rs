@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use senca_math::glam::DVec2;
+use senca_math::polygon::signed_area;
 use senca_scene::{MAX_FACES, REVOLUTION_CREASE, ShapeError};
 
 use crate::intersect::build::{malformed, positive};
@@ -153,6 +154,16 @@ pub(super) fn pieces_of(profile: &[DVec2], bezier: bool) -> Vec<Piece> {
     };
     join(&mut pieces);
     pieces
+}
+
+/// Area that a closed profile runs around, negative when clockwise, as far as a polygon of steps tells.
+pub(super) fn area(pieces: &[Piece]) -> f64 {
+    let steps = |piece: &Piece| if piece.straight { 1 } else { LENGTH_STEPS };
+    let points = |piece: &Piece| -> Vec<DVec2> {
+        (0..steps(piece)).map(|i| piece.at(i as f64 / steps(piece) as f64)).collect()
+    };
+    let last = pieces.last().map(|piece| piece.points[3]);
+    signed_area(&pieces.iter().flat_map(points).chain(last).collect::<Vec<_>>())
 }
 
 /// Numbers the smooth runs, shares normals within them, and adds up lengths. A new run begins where the
