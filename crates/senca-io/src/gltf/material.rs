@@ -1,5 +1,7 @@
 //! Materials (glTF 2.0, section 3.9) with their extensions.
 
+use std::collections::BTreeSet;
+
 use senca_scene::math::LinearRgb;
 use senca_scene::math::glam::{Mat3, Vec2};
 use senca_scene::{AlphaMode, ColorSpace, Material, MetallicRoughness, Reflection, TextureId, TextureRef};
@@ -13,8 +15,38 @@ use super::texture::Textures;
 pub(super) fn read_all<'d>(document: &'d Document<'_>, textures: &mut Textures<'d>) -> Vec<Material> {
     let materials = document.root.materials.iter().enumerate();
     materials
-        .map(|(i, json)| Reader { document, textures, place: format!("materials[{i}]") }.read(json))
+        .map(|(i, json)| {
+            let (place, sets) = (format!("materials[{i}]"), coordinate_sets(json));
+            Reader { document, textures, place, sets }.read(json)
+        })
         .collect()
+}
+
+/// Which of the file's sets of texture coordinates are the two that a mesh has, for surfaces of this
+/// material: the first two of those that it names, or 0 and 1 when they are enough.
+pub(super) fn coordinate_sets(json: &json::Material) -> [u64; 2] {
+    let reflection = json.pbr_metallic_roughness.as_deref();
+    let coat = json.extensions.as_deref().and_then(|e| e.specular_glossiness.as_ref());
+    let infos = [
+        reflection.and_then(|r| r.base_color_texture.as_deref()),
+        reflection.and_then(|r| r.metallic_roughness_texture.as_deref()),
+        coat.and_then(|c| c.diffuse_texture.as_deref()),
+        coat.and_then(|c| c.specular_glossiness_texture.as_deref()),
+        json.normal_texture.as_deref(),
+        json.occlusion_texture.as_deref(),
+        json.emissive_texture.as_deref(),
+    ];
+    let named: BTreeSet<u64> = infos.into_iter().flatten().map(coordinate_set).collect();
+    if named.iter().all(|&set| set <= 1) {
+        return [0, 1];
+    }
+    let mut named = named.into_iter();
+    let first = named.next().unwrap_or(0);
+    [first, named.next().unwrap_or(1)]
+}
+
+fn coordinate_set(info: &json::TextureInfo) -> u64 {
+    info.extensions.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(info.tex_coord).0
 }
 
 /// Reads one material.
@@ -22,6 +54,8 @@ pub(super) struct Reader<'t, 'd> {
     pub(super) document: &'d Document<'d>,
     pub(super) textures: &'t mut Textures<'d>,
     pub(super) place: String,
+    /// See [`coordinate_sets`].
+    pub(super) sets: [u64; 2],
 }
 
 impl Reader<'_, '_> {
@@ -178,12 +212,12 @@ impl Reader<'_, '_> {
         let index =
             self.document.index_or_warn(format_args!("{place}.index"), info.index, "texture", count)?;
         let transform = info.extensions.transform.as_ref();
-        let texcoord = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord).0;
-        if texcoord > 1 {
-            self.document
-                .warn(format!("{place}.texCoord: set {texcoord} is not read, only 0 and 1; left out"));
+        let set = coordinate_set(info);
+        let Some(texcoord) = self.sets.iter().position(|&known| known == set) else {
+            let message = format!("{place}.texCoord: set {set} is the third of this material; left out");
+            self.document.warn(message);
             return None;
-        }
+        };
         let texture = self.textures.get(self.document, index as usize, space)?;
         let strength = info.scale.or(info.strength).unwrap_or(1.0);
         let [strength] = self.document.floats(&place, [strength], [1.0]);

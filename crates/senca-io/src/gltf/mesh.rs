@@ -1,6 +1,7 @@
 //! Meshes: primitives of one mesh put together into one `senca_scene::Mesh` (glTF 2.0, section 3.7).
 //!
-//! 1. Primitives with the same attributes form a *group*, whose vertices are read once.
+//! 1. Primitives with the same attributes form a *group*, whose vertices are read once. Its two sets of
+//!    texture coordinates are those that its materials name.
 //! 2. Elements that name missing or not finite vertices are left out, with a warning; then vertices
 //!    that no element uses are left out too, so that a large array shared by many meshes is not
 //!    copied into each.
@@ -18,6 +19,7 @@ use super::accessor::Accessor;
 use super::document::{Document, name_or};
 use super::json;
 use super::json::Whole;
+use super::material;
 use super::topology::Elements;
 use crate::{Location, ReadError};
 
@@ -87,12 +89,13 @@ fn target_names(json: &json::Mesh) -> Vec<String> {
 }
 
 fn gather_groups(document: &Document<'_>, index: usize, json: &json::Mesh) -> Result<Vec<Group>, ReadError> {
-    let mut known: BTreeMap<(&Attributes, &[Attributes]), usize> = BTreeMap::new();
+    let mut known: BTreeMap<(&Attributes, &[Attributes], [u64; 2]), usize> = BTreeMap::new();
     let mut members: Vec<Vec<(usize, Elements)>> = Vec::new();
     for (p, primitive) in json.primitives.iter().enumerate() {
         let place = format!("meshes[{index}].primitives[{p}]");
         let Some(elements) = read_elements(document, &place, primitive)? else { continue };
-        let key = (&primitive.attributes, primitive.targets.as_slice());
+        let sets = coordinate_sets(document, primitive);
+        let key = (&primitive.attributes, primitive.targets.as_slice(), sets);
         let group = *known.entry(key).or_insert(members.len());
         if group == members.len() {
             members.push(Vec::new());
@@ -100,6 +103,12 @@ fn gather_groups(document: &Document<'_>, index: usize, json: &json::Mesh) -> Re
         members[group].push((p, elements));
     }
     members.into_iter().map(|primitives| read_group(document, index, json, primitives)).collect()
+}
+
+/// The sets of texture coordinates that the primitive's material asks for.
+fn coordinate_sets(document: &Document<'_>, primitive: &json::Primitive) -> [u64; 2] {
+    let material = primitive.material.and_then(|m| document.root.materials.get(m.0 as usize));
+    material.map_or([0, 1], material::coordinate_sets)
 }
 
 /// The elements of one primitive over the vertices of its accessors; `None` when it has no positions.
@@ -176,12 +185,13 @@ fn read_group(
         let place = format!("{place}.targets[{t}]");
         read_target(&Source { document, place: &place, attributes, count, select })
     });
+    let sets = coordinate_sets(document, primitive);
     let normal = source.vectors("NORMAL")?.map(|(normals, _)| normals);
     Ok(Group {
         normal: normal.map(|normals| sound_normals(normals, &points, &primitives)),
         points,
         vertex_point: None,
-        texcoord: [source.texcoords("TEXCOORD_0")?, source.texcoords("TEXCOORD_1")?],
+        texcoord: [source.texcoords(sets[0])?, source.texcoords(sets[1])?],
         color: source.colors()?,
         tangent: source.tangents()?,
         joints: source.joints()?,
@@ -278,8 +288,8 @@ impl<'a> Source<'a> {
         Ok(Some((vectors, accessor.width())))
     }
 
-    fn texcoords(&self, name: &str) -> Result<Option<Vec<Vec2>>, ReadError> {
-        let Some(accessor) = self.open(name, &[2])? else { return Ok(None) };
+    fn texcoords(&self, set: u64) -> Result<Option<Vec<Vec2>>, ReadError> {
+        let Some(accessor) = self.open(&format!("TEXCOORD_{set}"), &[2])? else { return Ok(None) };
         let texcoords = self.floats::<2>(&accessor)?.into_iter();
         Ok(Some(texcoords.map(|uv| Vec2::from_array(uv.map(finite_or_zero))).collect()))
     }

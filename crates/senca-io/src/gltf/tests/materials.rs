@@ -102,6 +102,44 @@ fn texture_transforms_turn_as_the_example_says() {
 }
 
 #[test]
+fn any_two_sets_of_texture_coordinates_serve_a_material() {
+    let mut file = Builder::new();
+    let view = file.view(&png([[0; 4]; 4]));
+    let position = file.square();
+    let sets: Vec<usize> = (0..4).map(|set| file.floats("VEC2", 2, &[set as f32; 8])).collect();
+    let indices = file.indices(&[0, 1, 2, 0, 2, 3]);
+    file.json["images"] = json!([{"bufferView": view}]);
+    file.json["textures"] = json!([{"source": 0}]);
+    let texture = |set: u32| json!({"index": 0, "texCoord": set});
+    file.json["materials"] = json!([
+        {"emissiveTexture": texture(3), "normalTexture": texture(2)},
+        {"emissiveTexture": texture(1)},
+        {"emissiveTexture": texture(0), "normalTexture": texture(2), "occlusionTexture": texture(3)}]);
+    let attributes = json!({"POSITION": position, "TEXCOORD_0": sets[0], "TEXCOORD_1": sets[1],
+        "TEXCOORD_2": sets[2], "TEXCOORD_3": sets[3]});
+    let primitive =
+        |material: u32| json!({"indices": indices, "attributes": attributes, "material": material});
+    file.json["meshes"] = json!([{"primitives": [primitive(0)]}, {"primitives": [primitive(1)]},
+        {"primitives": [primitive(2)]}]);
+    let scene = file.read();
+    let set_of = |mesh: usize, texture: Option<senca_scene::TextureRef>| {
+        let senca_scene::Shape::Mesh(mesh) = &scene.geometries[mesh].shape else { panic!("a mesh") };
+        let sets = [&mesh.vertices.texcoord0, &mesh.vertices.texcoord1];
+        texture.map(|t| sets[t.texcoord as usize][0].x)
+    };
+    let m = &scene.materials;
+    assert_eq!([m[0].emission_texture, m[0].normal_texture].map(|t| set_of(0, t)), [Some(3.0), Some(2.0)]);
+    assert_eq!(set_of(1, m[1].emission_texture), Some(1.0));
+    assert_eq!([m[2].emission_texture, m[2].normal_texture].map(|t| set_of(2, t)), [Some(0.0), Some(2.0)]);
+    assert_eq!(m[2].occlusion_texture, None);
+    assert!(
+        warnings(&scene).contains("occlusionTexture.texCoord: set 3 is the third"),
+        "{}",
+        warnings(&scene)
+    );
+}
+
+#[test]
 fn specular_glossiness_is_converted_with_its_textures() {
     let mut file = Builder::new();
     let diffuse = file.view(&png([[255, 0, 0, 128], [0, 0, 0, 255], [255; 4], [255; 4]]));
