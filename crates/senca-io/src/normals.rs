@@ -31,3 +31,12 @@ pub(crate) fn fill_missing_normals(mesh: &mut Mesh) {
         }
     }
 }
+
+/// Makes points at one place one when the file gives no normals. Modellers repeat points along the seams of
+/// what they put together; normals made from the faces would show each seam as an edge. Where it is one,
+/// the faces meet too sharply to share a normal anyway.
+pub(crate) fn join_doubled_points(mesh: &mut Mesh) {
+    if mesh.vertices.normal.is_empty() && mesh.faces.len() > 0 {
+        mesh.weld(0.0);
+    }
+}

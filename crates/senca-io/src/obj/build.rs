@@ -10,7 +10,7 @@ use senca_scene::{
 };
 
 use super::parse::{Corner, NONE, Run, Smoothing, Soup, SurfaceKey};
-use crate::normals::{fill_missing_normals, unit};
+use crate::normals::{fill_missing_normals, join_doubled_points, unit};
 use crate::{Files, ReadError};
 
 /// Vertices of one point that are looked through one by one; further ones are hashed.
@@ -35,6 +35,7 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
             |key: &SurfaceKey| key.material.as_ref().and_then(|name| materials.get(name).copied());
         let named = part.keys.iter().zip(part.surface_names);
         part.mesh.surfaces = named.map(|(key, name)| surface(name, key, material_of(key))).collect();
+        join_doubled_points(&mut part.mesh);
         let name = if part.name.is_empty() { scene.name.clone() } else { part.name };
         let shape = Shape::Mesh(part.mesh);
         let geometry = scene.add_geometry(Geometry { name: name.clone(), shape, material: None });

@@ -85,6 +85,16 @@ fn objects_become_geometries_with_their_own_points() {
 }
 
 #[test]
+fn points_repeated_along_a_seam_are_one_unless_normals_are_given() {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0.1\nv 2 1 0.1\nv 1 1 0\n";
+    let seam = mesh(&format!("{square}f 1 2 3 4\nf 5 6 7 8\n"));
+    assert_eq!((seam.points.len(), seam.vertices.point.len()), (6, 6));
+    assert_eq!(seam.faces.corners_of(1), [1, 4, 5, 2]);
+    let given = mesh(&format!("{square}vn 0 0 1\nf 1//1 2//1 3//1 4//1\nf 5//1 6//1 7//1 8//1\n"));
+    assert_eq!(given.points.len(), 8);
+}
+
+#[test]
 fn smoothing_groups_make_creases_and_materials_do_not() {
     let crease = mesh(&format!("{SQUARE}s 1\nf 1 2 3\ns 2\nf 1 3 4\n"));
     assert_eq!(crease.vertices.point.len(), 6);

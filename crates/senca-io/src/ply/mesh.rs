@@ -7,7 +7,7 @@ use senca_scene::{Mesh, Surface, Vertices};
 use super::body::Body;
 use super::header::{Element, Header};
 use crate::ReadError;
-use crate::normals::{fill_missing_normals, unit};
+use crate::normals::{fill_missing_normals, join_doubled_points, unit};
 use crate::weld::Welder;
 
 const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -280,6 +280,7 @@ impl Reader<'_, '_> {
         }
         self.corners.attach(&mut self.mesh);
         fill_missing_normals(&mut self.mesh);
+        join_doubled_points(&mut self.mesh);
         (self.mesh, warnings)
     }
 }
