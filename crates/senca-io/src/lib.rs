@@ -29,5 +29,5 @@ pub use error::{Location, ReadError, WriteError};
 use files::stem;
 pub use files::{Directory, Files, Limits, NoFiles};
 pub use flatten::combined as combined_mesh;
-pub use load::{load, load_bytes, load_bytes_with_hints, load_with_hints, save};
+pub use load::{combined_patches, load, load_bytes, load_bytes_with_hints, load_with_hints, save};
 pub use output::{write_file, write_file_while};

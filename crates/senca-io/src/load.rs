@@ -114,7 +114,7 @@ pub fn save(scene: &Scene, path: &Path) -> Result<Vec<Warning>, WriteError> {
         Some("stl") => stl::write(scene, StlEncoding::default(), &settings)?,
         Some("ply") => ply::write(scene, PlyEncoding::default(), &settings)?,
         Some("dat") => classic::write_object(&flatten::combined(scene, &settings)?)?,
-        Some("bez") => classic::write_patches(&patches(scene)?)?,
+        Some("bez") => classic::write_patches(&combined_patches(scene)?)?,
         other => {
             let what = other.map_or("no extension".to_owned(), |other| format!("the extension \"{other}\""));
             let message = format!(
@@ -143,8 +143,11 @@ fn save_obj(scene: &Scene, path: &Path, settings: &TessellationSettings) -> Resu
     Ok(output.warnings)
 }
 
-/// The patches that `scene` shows, in world coordinates, surfaces numbered anew.
-fn patches(scene: &Scene) -> Result<Vec<BezierPatch>, WriteError> {
+/// The Bézier patches that `scene` shows, in world coordinates, surfaces numbered anew from 0.
+///
+/// # Errors
+/// [`WriteError::Unsupported`] when it shows any other shape.
+pub fn combined_patches(scene: &Scene) -> Result<Vec<BezierPatch>, WriteError> {
     let mut all = Vec::new();
     for instance in scene.instances() {
         let Shape::BezierPatches { patches } = &scene.geometries[instance.geometry.index()].shape else {

@@ -405,6 +405,18 @@ fn the_patch_of_1991_becomes_the_polygons_of_1991() {
 }
 
 #[test]
+fn patches_stay_patches_in_a_patch_file() {
+    let folder = folder();
+    let teapot = sample("classic/teapot.bez").display().to_string();
+    assert_exit(&run_in(folder.path(), &["convert", &teapot, "a.bez"]), 0, "");
+    assert_exit(&run_in(folder.path(), &["convert", "a.bez", "b.bez"]), 0, "");
+    let [a, b] =
+        ["a.bez", "b.bez"].map(|name| std::fs::read_to_string(folder.path().join(name)).expect("text"));
+    assert!(a.starts_with("290 32 5\n") && a == b);
+    assert_exit(&run_in(folder.path(), &["convert", "cube.obj", "c.bez"]), 2, "Bézier patches only");
+}
+
+#[test]
 fn pictures_are_converted_too() {
     let folder = folder();
     assert_exit(&run_in(folder.path(), &["render", "cube.obj", "--size", "9x7"]), 0, "");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueHint};
 use senca::io::gltf::{WriteSettings, write_glb, write_gltf};
 use senca::io::images::{PictureFormat, PictureOptions, decode_picture, encode};
-use senca::io::{Format as Content, Limits, classic, combined_mesh, detect, obj, ply, stl};
+use senca::io::{Format as Content, Limits, classic, combined_mesh, combined_patches, detect, obj, ply, stl};
 use senca::scene::{
     BezierPatch, PatchConversion, Scene, Shape, TessellationSettings, Tolerance, Warning, patch_to_polygons,
 };
@@ -22,8 +22,8 @@ pub(crate) struct Arguments {
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     input: PathBuf,
 
-    /// Model: .glb .gltf .obj .stl .ply, or .dat for the object file of 1991; from a picture:
-    /// .png .exr .pfm .ppm .jpg .bmp; - is standard output
+    /// Model: .glb .gltf .obj .stl .ply, or .dat and .bez for the object and patch files of 1991; from a
+    /// picture: .png .exr .pfm .ppm .jpg .bmp; - is standard output
     #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
     output: PathBuf,
 
@@ -70,17 +70,19 @@ enum Format {
     Stl,
     Ply,
     Object1991,
+    Patches1991,
     Picture(PictureFormat),
 }
 
 /// Extensions of model formats.
-const MODELS: [(&str, Format); 6] = [
+const MODELS: [(&str, Format); 7] = [
     ("glb", Format::Glb),
     ("gltf", Format::Gltf),
     ("obj", Format::Obj),
     ("stl", Format::Stl),
     ("ply", Format::Ply),
     ("dat", Format::Object1991),
+    ("bez", Format::Patches1991),
 ];
 
 /// A file in the making, with those beside it and what it cannot hold.
@@ -182,6 +184,7 @@ fn encoded(scene: &Scene, format: Format, arguments: &Arguments) -> Result<Files
         Format::Stl => only(stl::write(scene, stl::StlEncoding::Binary, &settings)?),
         Format::Ply if arguments.ascii => only(ply::write(scene, ply::PlyEncoding::Text, &settings)?),
         Format::Ply => only(ply::write(scene, ply::PlyEncoding::LittleEndian, &settings)?),
+        Format::Patches1991 => only(classic::write_patches(&combined_patches(scene)?)?),
         Format::Object1991 | Format::Picture(_) => {
             only(classic::write_object(&combined_mesh(scene, &settings)?)?)
         }
