@@ -7,10 +7,12 @@
 //! A vertex is a place seen from one smooth face: where faces meet at an edge that is to stay visible
 //! each has its own vertices (course text, section 4.1, figure 4.4).
 
+mod attributes;
 mod build;
 mod divide;
 mod inside;
 mod paint;
+mod places;
 mod restore;
 #[cfg(test)]
 mod scene_tests;
@@ -24,8 +26,10 @@ use senca_math::{Aabb, LinearRgb};
 
 use crate::PatchPolygon;
 
+pub use attributes::CornerAttributes;
 pub use build::{MeshSettings, Sides};
 pub(crate) use divide::MAX_LEVEL;
+pub(crate) use places::{Corner, Outline, Places};
 pub(crate) use restore::MeshSeed;
 
 /// Stands for "none" among indices.
@@ -90,6 +94,9 @@ pub struct ElementMesh {
     elements: Vec<Element>,
     /// The vertex in the middle of an edge, by the edge's vertices in ascending order.
     midpoints: HashMap<[u32; 2], u32>,
+    /// Per polygon, in the order of its vertices; empty where the scene has neither texture coordinates
+    /// nor colours of vertices.
+    attributes: Vec<[CornerAttributes; 4]>,
 }
 
 impl Element {
@@ -210,6 +217,7 @@ impl ElementMesh {
             + size_of_val(&*self.surfaces)
             + size_of_val(&*self.polygons)
             + size_of_val(&*self.elements)
+            + size_of_val(&*self.attributes)
             + self.midpoints.capacity() * (size_of::<([u32; 2], u32)>() + 1)
     }
 }

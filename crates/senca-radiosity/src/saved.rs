@@ -5,11 +5,12 @@
 //! | 8 | `SENCALIT` |
 //! | 4 | version, 1 |
 //! | 8 | fingerprint of the scene, see [`light_fingerprint`] |
-//! | 4 x 5 | numbers of vertices, surfaces, polygons, divided elements, elements |
+//! | 4 x 6 | numbers of vertices, surfaces, polygons, polygons with attributes, divided elements, elements |
 //! | 8 x 4, 4, 8 x 2, 1 | report: polygons, patches, elements, links; iterations; residual, energy error; converged |
 //! | 48 per vertex | place and normal |
-//! | 33 per surface | instance, material, back, reflectance, emission |
+//! | 45 per surface | instance, material, back, reflectance, emission, transmittance |
 //! | 20 per polygon | vertices, surface |
+//! | 128 per polygon with attributes | texture coordinates and colour of 4 corners |
 //! | 4 per divided element | its number, in the order of division |
 //! | 24 per element | light that arrives, and the part of it that comes straight from lamps and emitters |
 //! | 8 | checksum of all before |
@@ -25,7 +26,7 @@ mod tests;
 use senca_math::LinearRgb;
 
 use crate::mesh::MeshSeed;
-use crate::{ElementMesh, RadiantSurface, Solution, SolveReport};
+use crate::{CornerAttributes, ElementMesh, RadiantSurface, Solution, SolveReport};
 use bytes::{Reader, Writer, checksum};
 
 pub use fingerprint::light_fingerprint;
@@ -36,6 +37,7 @@ const CHECKSUM: usize = 8;
 const VERTEX: usize = 48;
 const SURFACE: usize = 45;
 const POLYGON: usize = 20;
+const ATTRIBUTES: usize = 128;
 const LIGHT: usize = 24;
 
 /// Why a saved solution cannot be used.
@@ -67,9 +69,14 @@ impl Solution {
         out.bytes(MAGIC);
         out.u32(VERSION);
         out.u64(fingerprint);
-        for count in
-            [seed.vertices.len(), seed.surfaces.len(), seed.polygons.len(), seed.divided.len(), elements]
-        {
+        for count in [
+            seed.vertices.len(),
+            seed.surfaces.len(),
+            seed.polygons.len(),
+            seed.attributes.len(),
+            seed.divided.len(),
+            elements,
+        ] {
             out.u32(count as u32);
         }
         write_report(&mut out, &self.report);
@@ -78,6 +85,7 @@ impl Solution {
         for (vertices, surface) in &seed.polygons {
             vertices.iter().chain([surface]).for_each(|&number| out.u32(number));
         }
+        seed.attributes.iter().flatten().for_each(|corner| write_attributes(&mut out, corner));
         seed.divided.iter().for_each(|&element| out.u32(element));
         let of = |values: &[LinearRgb], element: usize| values.get(element).copied().unwrap_or_default();
         for element in 0..elements {
@@ -114,15 +122,16 @@ impl Solution {
 
 /// All behind the fingerprint.
 fn read_body(reader: &mut Reader<'_>) -> Result<Solution, SavedSolutionError> {
-    let mut counts = [0; 5];
+    let mut counts = [0; 6];
     for count in &mut counts {
         *count = reader.u32().ok_or(TOO_SHORT)? as usize;
     }
-    let [vertices, surfaces, polygons, divided, elements] = counts;
+    let [vertices, surfaces, polygons, attributes, divided, elements] = counts;
     let report = read_report(reader).ok_or(TOO_SHORT)?;
     let needed = VERTEX * vertices
         + SURFACE * surfaces
         + POLYGON * polygons
+        + ATTRIBUTES * attributes
         + 4 * divided
         + LIGHT * elements
         + CHECKSUM;
@@ -134,6 +143,7 @@ fn read_body(reader: &mut Reader<'_>) -> Result<Solution, SavedSolutionError> {
         vertices: read_many(vertices, || Some([reader.vector()?, reader.vector()?]))?,
         surfaces: read_many(surfaces, || read_surface(reader))?,
         polygons: read_many(polygons, || Some((reader.u32x4()?, reader.u32()?)))?,
+        attributes: read_many(attributes, || read_attributes(reader))?,
         divided: read_many(divided, || reader.u32())?,
     };
     let mesh = ElementMesh::of_seed(&seed, elements).filter(|mesh| mesh.elements().len() == elements);
@@ -167,6 +177,25 @@ fn read_surface(reader: &mut Reader<'_>) -> Option<RadiantSurface> {
         emission: reader.light()?,
         transmittance: reader.light()?,
     })
+}
+
+fn write_attributes(out: &mut Writer, corner: &CornerAttributes) {
+    let texcoords = corner.texcoords.iter().flat_map(|texcoord| texcoord.to_array());
+    texcoords.chain(corner.color.to_array()).for_each(|number| out.bytes(&number.to_le_bytes()));
+}
+
+fn read_attributes(reader: &mut Reader<'_>) -> Option<[CornerAttributes; 4]> {
+    let mut corners = [CornerAttributes::default(); 4];
+    for corner in &mut corners {
+        let mut numbers = [0.0; 8];
+        for number in &mut numbers {
+            *number = reader.f32()?;
+        }
+        let [u0, v0, u1, v1, r, g, b, a] = numbers;
+        *corner =
+            CornerAttributes { texcoords: [[u0, v0].into(), [u1, v1].into()], color: [r, g, b, a].into() };
+    }
+    Some(corners)
 }
 
 fn write_report(out: &mut Writer, report: &SolveReport) {

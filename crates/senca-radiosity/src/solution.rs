@@ -50,6 +50,18 @@ impl Solution {
         surface.emission + surface.reflectance * self.incident[element as usize]
     }
 
+    /// The same with all light, that of emitters included, multiplied by a factor.
+    #[must_use]
+    pub fn exposed(&self, factor: f32) -> Self {
+        let mut exposed = self.clone();
+        if factor != 1.0 {
+            exposed.mesh.scale_emission(factor);
+            let values = exposed.incident.iter_mut().chain(&mut exposed.direct);
+            values.for_each(|value| *value *= factor);
+        }
+        exposed
+    }
+
     /// Sets the values of divided elements to the means over their parts, weighted by area.
     pub fn pull(&mut self) {
         for values in [&mut self.incident, &mut self.direct] {

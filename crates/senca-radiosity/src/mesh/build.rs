@@ -14,7 +14,7 @@ use smallvec::SmallVec;
 
 use super::inside::{self, Body};
 use super::paint::Paint;
-use super::{Element, ElementMesh, NONE, Polygon, RadiantSurface};
+use super::{CornerAttributes, Element, ElementMesh, NONE, Polygon, RadiantSurface};
 use crate::RadiosityError;
 
 /// Normals of corners at one place that differ by less than this belong to one vertex; its cosine.
@@ -357,10 +357,17 @@ impl<'s> Builder<'s> {
         };
         let mut vertices: SmallVec<[u32; 4]> =
             corners.iter().map(|&corner| self.vertex(placed, corner)).collect();
+        let mut attributes = [CornerAttributes::default(); 4];
+        for (slot, &corner) in attributes.iter_mut().zip(corners) {
+            *slot = CornerAttributes::of_vertex(placed.mesh, corner);
+        }
         if placed.reversed {
             vertices.reverse();
+            attributes[..corners.len().min(4)].reverse();
         }
-        if !self.mesh.push_polygon(&vertices, surface) {
+        if self.mesh.push_polygon(&vertices, surface) {
+            self.add_attributes(attributes);
+        } else {
             self.flat += 1;
         }
     }
@@ -392,6 +399,17 @@ impl<'s> Builder<'s> {
             here.push(normal);
         }
         doubled
+    }
+
+    /// Keeps the attributes of the last polygon once there has been one that has any.
+    fn add_attributes(&mut self, attributes: [CornerAttributes; 4]) {
+        let plain = [CornerAttributes::default(); 4];
+        let (count, known) = (self.mesh.polygons.len(), self.mesh.attributes.len());
+        if known == count || (known == 0 && attributes == plain) {
+            return;
+        }
+        self.mesh.attributes.resize(count - 1, plain);
+        self.mesh.attributes.push(attributes);
     }
 
     /// The vertex for a corner: one that is there already at this place and has nearly this normal.

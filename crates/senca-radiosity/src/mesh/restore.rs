@@ -2,7 +2,7 @@
 
 use senca_math::glam::DVec3;
 
-use super::{ElementMesh, RadiantSurface};
+use super::{CornerAttributes, ElementMesh, RadiantSurface};
 
 /// What a mesh is made of. Everything else follows, since division has no choices.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +12,8 @@ pub(crate) struct MeshSeed {
     pub(crate) surfaces: Vec<RadiantSurface>,
     /// Vertices (the last is [`super::NONE`] in a triangle) and surface of each polygon.
     pub(crate) polygons: Vec<([u32; 4], u32)>,
+    /// Of each polygon, or none.
+    pub(crate) attributes: Vec<[CornerAttributes; 4]>,
     /// Elements that are divided, in the order of their division.
     pub(crate) divided: Vec<u32>,
 }
@@ -29,6 +31,7 @@ impl ElementMesh {
             vertices: vertices.map(|(&position, &normal)| [position, normal]).collect(),
             surfaces: self.surfaces.clone(),
             polygons: polygons.map(|(polygon, root)| (root.vertices, polygon.surface)).collect(),
+            attributes: self.attributes.clone(),
             divided,
         }
     }
@@ -36,7 +39,8 @@ impl ElementMesh {
     /// The mesh of a seed; `None` where the seed does not hold together or leads to more than
     /// `max_elements`.
     pub(crate) fn of_seed(seed: &MeshSeed, max_elements: usize) -> Option<Self> {
-        let mut mesh = Self { surfaces: seed.surfaces.clone(), ..Self::default() };
+        let attributes = seed.attributes.clone();
+        let mut mesh = Self { surfaces: seed.surfaces.clone(), attributes, ..Self::default() };
         for &[position, normal] in &seed.vertices {
             mesh.push_vertex(position, normal);
         }
@@ -51,6 +55,9 @@ impl ElementMesh {
             if mesh.polygons.len() != number + 1 {
                 return None;
             }
+        }
+        if ![0, mesh.polygons.len()].contains(&mesh.attributes.len()) {
+            return None;
         }
         for &element in &seed.divided {
             let there = (element as usize) < mesh.elements.len();

@@ -133,6 +133,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Finite.
+    pub(super) fn f32(&mut self) -> Option<f32> {
+        self.array().map(f32::from_le_bytes).filter(|v| v.is_finite())
+    }
+
+    /// Finite.
     pub(super) fn vector(&mut self) -> Option<DVec3> {
         Some(DVec3::new(self.f64()?, self.f64()?, self.f64()?)).filter(|v| v.is_finite())
     }
@@ -141,7 +146,7 @@ impl<'a> Reader<'a> {
     pub(super) fn light(&mut self) -> Option<LinearRgb> {
         let mut channels = [0.0; 3];
         for channel in &mut channels {
-            *channel = self.array().map(f32::from_le_bytes).filter(|v| v.is_finite() && *v >= 0.0)?;
+            *channel = self.f32().filter(|v| *v >= 0.0)?;
         }
         Some(LinearRgb::from_array(channels))
     }
