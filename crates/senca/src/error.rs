@@ -2,6 +2,7 @@
 
 use senca_math::ViewError;
 use senca_pipeline::RenderError;
+use senca_radiosity::{RadiosityError, SavedSolutionError};
 use senca_trace::{SavedFilmError, TraceError};
 
 /// Why [`render`](crate::render) gave no picture. Variants come in the order caller, input.
@@ -36,6 +37,12 @@ pub enum Error {
     /// A partial picture cannot be gone on with.
     #[error("{0}")]
     Partial(SavedFilmError),
+    /// Light could not be computed.
+    #[error(transparent)]
+    Radiosity(RadiosityError),
+    /// A saved solution cannot be used.
+    #[error("{0}")]
+    SavedLight(#[from] SavedSolutionError),
     /// The settings contradict each other.
     #[error("{0}")]
     Combination(String),
@@ -47,6 +54,16 @@ impl From<TraceError> for Error {
         match error {
             TraceError::Cancelled => Self::Render(RenderError::Cancelled),
             other => Self::Trace(other),
+        }
+    }
+}
+
+impl From<RadiosityError> for Error {
+    /// Whoever cancels need not know what was cancelled.
+    fn from(error: RadiosityError) -> Self {
+        match error {
+            RadiosityError::Cancelled => Self::Render(RenderError::Cancelled),
+            other => Self::Radiosity(other),
         }
     }
 }
@@ -79,7 +96,10 @@ impl Error {
         use RenderError::{Crop, EmptyImage, ImageTooLarge, Setting};
         match self {
             Self::UnknownCamera { .. } | Self::UnknownAnimation { .. } => true,
-            Self::View(_) | Self::Partial(_) => false,
+            Self::View(_) | Self::Partial(_) | Self::SavedLight(_) => false,
+            Self::Radiosity(error) => {
+                matches!(error, RadiosityError::Setting { .. } | RadiosityError::TooManyElements { .. })
+            }
             Self::Trace(error) => matches!(error, TraceError::Setting { .. }),
             Self::Combination(_) => true,
             Self::Render(error) => {

@@ -85,7 +85,7 @@ fn glows(scene: &Scene) -> bool {
 }
 
 /// The scene at the moment asked for, or in the pose of its file; meshes bent as their nodes say.
-fn posed<'s>(scene: Cow<'s, Scene>, moment: Option<&Moment>) -> Result<Cow<'s, Scene>, Error> {
+pub(crate) fn posed<'s>(scene: Cow<'s, Scene>, moment: Option<&Moment>) -> Result<Cow<'s, Scene>, Error> {
     let (animation, seconds) = match moment {
         Some(moment) => (animation_of(&scene, moment)?, moment.seconds),
         None => (None, 0.0),

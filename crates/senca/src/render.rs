@@ -8,6 +8,7 @@ use senca_pipeline::Control;
 use senca_scene::{Background, Scene};
 
 use crate::prepare::{Prepared, default_background, prepare};
+use crate::radiosity::{compute_light, show_light};
 use crate::traced::{TraceJob, trace_with};
 use crate::{Error, Method, Settings};
 
@@ -20,6 +21,8 @@ pub struct Report {
     pub drawing: senca_pipeline::Report,
     /// What the tracer tells, where one drew.
     pub tracing: Option<senca_trace::FilmReport>,
+    /// What the solver of radiosity tells, where one was at work.
+    pub radiosity: Option<senca_radiosity::SolveReport>,
 }
 
 /// Draws `scene` into a new picture.
@@ -60,6 +63,10 @@ pub fn render_with(
     settings: &Settings,
     control: &Control<'_>,
 ) -> Result<(Image, Report), Error> {
+    if settings.method == Method::Radiosity {
+        let light = compute_light(&scene, settings, control, &mut |_| {})?;
+        return show_light(scene, &light.solution, settings, control);
+    }
     if settings.method != Method::Raster {
         let traced = trace_with(scene, settings, control, &mut TraceJob::default())?;
         return Ok((traced.image, traced.report));
@@ -70,7 +77,7 @@ pub fn render_with(
     let drawing = drawing_settings(&prepared, settings);
     let (image, report) =
         senca_pipeline::render_part(&prepared.scene, &prepared.view, &drawing, prepared.size, control)?;
-    Ok((image, Report { prepare_seconds, drawing: report, tracing: None }))
+    Ok((image, Report { prepare_seconds, drawing: report, ..Report::default() }))
 }
 
 /// The pipeline's settings, with the crop and a background: the caller's, white paper for line

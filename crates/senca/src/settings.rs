@@ -1,11 +1,14 @@
 //! What a caller of [`render`](crate::render) chooses.
 
 use senca_math::glam::DVec3;
+
 use senca_pipeline::Crop;
 use senca_trace::antialias::Antialiasing;
 use senca_trace::path::PathSettings;
 use senca_trace::{RecursiveSettings, WorldSettings};
 use std::time::Duration;
+
+use crate::RadiositySettings;
 
 /// What is drawn, from where, when and how. The default draws the scene as it is: 1024 x 768 pixels
 /// or what of them the camera's proportions leave, from its first camera, in the pose of its file.
@@ -30,6 +33,8 @@ pub struct Settings {
     pub drawing: senca_pipeline::Settings,
     /// How rays are traced, where they are.
     pub tracing: Tracing,
+    /// How light is computed and shown by [`Method::Radiosity`].
+    pub radiosity: RadiositySettings,
 }
 
 /// The ways to make a picture.
@@ -42,6 +47,8 @@ pub enum Method {
     Trace,
     /// Path tracing: light from everywhere, at the price of noise that falls with samples.
     Path,
+    /// Radiosity: light exchanged between matt surfaces, computed once for all cameras.
+    Radiosity,
 }
 
 /// How rays are traced.

@@ -252,7 +252,7 @@ impl Go<'_> {
 }
 
 /// The tracer's own settings with what it shares with the pipeline.
-fn recursive_settings(
+pub(crate) fn recursive_settings(
     wish: &RecursiveSettings,
     drawing: &senca_pipeline::Settings,
 ) -> Result<RecursiveSettings, Error> {
@@ -275,7 +275,7 @@ fn recursive_settings(
 }
 
 /// What is seen where nothing is: the caller's wish, the scene's, or a quiet grey.
-fn background(scene: &Scene, settings: &Settings) -> Background {
+pub(crate) fn background(scene: &Scene, settings: &Settings) -> Background {
     match (settings.drawing.background, scene.background) {
         (Some(wish), _) => wish,
         (None, Background::None) => default_background(false),
@@ -284,7 +284,7 @@ fn background(scene: &Scene, settings: &Settings) -> Background {
 }
 
 /// The part of the picture that is drawn.
-fn area([width, height]: [u32; 2], settings: &Settings) -> Result<Area, Error> {
+pub(crate) fn area([width, height]: [u32; 2], settings: &Settings) -> Result<Area, Error> {
     if width == 0 || height == 0 {
         return Err(RenderError::EmptyImage { width, height }.into());
     }
@@ -305,7 +305,7 @@ fn area([width, height]: [u32; 2], settings: &Settings) -> Result<Area, Error> {
 }
 
 /// Runs `work` on `threads` threads, 0 for those that are there anyway.
-fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
+pub(crate) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
     if threads == 0 {
         return Ok(work());
     }

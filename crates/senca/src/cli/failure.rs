@@ -2,9 +2,12 @@
 
 use std::fmt::Display;
 use std::io::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 
+use senca::Error;
 use senca::io::{ReadError, WriteError};
+use senca::pipeline::RenderError;
 
 /// Why a command stopped.
 #[derive(Debug, PartialEq, Eq)]
@@ -28,6 +31,15 @@ impl Failure {
     /// Bad input, told as `message`.
     pub(crate) fn input(message: impl Display) -> Self {
         Self::Input(message.to_string())
+    }
+
+    /// How a command ends for an error of the library about the scene read from `path`.
+    pub(crate) fn of_scene(path: &Path, error: &Error) -> Self {
+        match error {
+            Error::Render(RenderError::Cancelled) => Self::Interrupted,
+            error if error.is_usage() => Self::usage(error),
+            error => Self::input(format!("{}: {error}", path.display())),
+        }
     }
 
     /// What the user is told, if anything.

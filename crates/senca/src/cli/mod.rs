@@ -3,6 +3,7 @@
 mod failure;
 pub(crate) mod input;
 mod interrupt;
+mod light;
 pub(crate) mod output;
 mod progress;
 mod stats;
@@ -11,6 +12,9 @@ pub(crate) mod values;
 
 pub(crate) use failure::Failure;
 pub(crate) use interrupt::Interrupt;
+pub(crate) use light::{LightArguments, LightFiles};
 pub(crate) use progress::Progress;
-pub(crate) use stats::{Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles, peak_bytes};
+pub(crate) use stats::{
+    RadiosityStats, Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles, peak_bytes,
+};
 pub(crate) use threads::use_threads;

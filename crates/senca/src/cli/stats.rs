@@ -22,6 +22,9 @@ pub(crate) struct Stats {
     /// What following rays took, where they were.
     #[serde(flatten)]
     pub(crate) tracing: Option<TracingStats>,
+    /// What computing light took, where it was computed or read.
+    #[serde(flatten)]
+    pub(crate) radiosity: Option<RadiosityStats>,
     /// Most memory the process has held at once, in bytes; `null` where the system does not tell.
     pub(crate) peak_bytes: Option<u64>,
 }
@@ -41,6 +44,43 @@ pub(crate) struct TracingStats {
     pub(crate) samples_total: u64,
     /// The same work for a ray.
     pub(crate) per_ray: PerRay,
+}
+
+/// What computing light took, and how exact it is.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct RadiosityStats {
+    /// Plane polygons of the scene that took part.
+    pub(crate) polygons: u64,
+    /// Elements that are not divided.
+    pub(crate) patches: u64,
+    /// All elements.
+    pub(crate) elements: u64,
+    /// Form factors, or links between elements.
+    pub(crate) links: u64,
+    /// Rounds of the solver.
+    pub(crate) iterations: u32,
+    /// The last change of a radiosity, as a share of the largest.
+    pub(crate) residual: f64,
+    /// Power that is not accounted for, as a share of all.
+    pub(crate) energy_error: f64,
+    /// Whether the solver met its tolerance.
+    pub(crate) converged: bool,
+}
+
+impl RadiosityStats {
+    /// Of a solution.
+    pub(crate) fn of(report: &senca::light::SolveReport) -> Self {
+        Self {
+            polygons: report.polygons,
+            patches: report.patches,
+            elements: report.elements,
+            links: report.links,
+            iterations: report.iterations,
+            residual: report.residual,
+            energy_error: report.energy_error,
+            converged: report.converged,
+        }
+    }
 }
 
 /// Rays by kind.
@@ -198,6 +238,15 @@ mod tests {
         }
         for key in ["primary", "shadow", "reflected", "transmitted", "bounce"] {
             assert_eq!(json["rays"][key], 0, "{key}");
+        }
+    }
+
+    #[test]
+    fn light_is_told_where_it_was_computed() {
+        let stats = Stats { radiosity: Some(RadiosityStats::default()), ..Stats::default() };
+        let json = serde_json::to_value(stats).expect("plain data");
+        for key in ["patches", "elements", "links", "iterations", "residual", "energy_error", "converged"] {
+            assert!(json.get(key).is_some(), "{key}");
         }
     }
 

@@ -1,8 +1,10 @@
 //! The subcommands, one file each.
 
+mod bake;
 mod bench;
 mod convert;
 mod info;
+mod lux;
 mod render;
 mod view_matrix;
 
@@ -28,6 +30,10 @@ enum Command {
     Convert(convert::Arguments),
     /// Prints the partial matrices of a viewing operation and their product
     ViewMatrix(view_matrix::Arguments),
+    /// Bakes the light of a scene into a model that other programs show
+    Bake(bake::Arguments),
+    /// Measures illuminance in lux on a plane
+    Lux(lux::Arguments),
     /// Measures this program on data it makes itself
     Bench(bench::Arguments),
 }
@@ -39,6 +45,8 @@ pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
         Command::Info(arguments) => info::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
         Command::ViewMatrix(arguments) => view_matrix::run(&arguments),
+        Command::Bake(arguments) => bake::run(&arguments),
+        Command::Lux(arguments) => lux::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     }
 }

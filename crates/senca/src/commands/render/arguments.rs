@@ -1,17 +1,19 @@
 //! The options of `senca render`.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum, ValueHint};
 use senca::io::toml_scene::{MethodHint, RenderHints, ShadingHint};
 use senca::math::glam::DVec3;
 use senca::pipeline::Shading;
 use senca::scene::Filter;
-use senca::{LookAt, Method, Moment, Settings, Tracing, Viewpoint, pipeline};
+use senca::{LookAt, Method, Moment, Settings, ToneMap, Tracing, Viewpoint, pipeline};
 
+use super::radiosity::RadiosityArguments;
 use super::tracing::{AntialiasingChoice, TracingArguments, antialiasing};
-use crate::cli::Failure;
 use crate::cli::values::{BackgroundChoice, Crop, Size, Time, positive, stops, time, triple, view_angle};
+use crate::cli::{Failure, LightFiles};
 
 /// What is drawn and how.
 #[derive(Args, Debug)]
@@ -27,6 +29,8 @@ pub(crate) struct Arguments {
     pub(crate) drawing: DrawingArguments,
     #[command(flatten)]
     pub(crate) tracing: TracingArguments,
+    #[command(flatten)]
+    pub(crate) radiosity: RadiosityArguments,
     #[command(flatten)]
     pub(crate) view: ViewArguments,
     #[command(flatten)]
@@ -78,7 +82,7 @@ pub(crate) struct OutputArguments {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct DrawingArguments {
-    /// How the scene is drawn: raster, trace or path [default: the scene's, or raster]
+    /// How the scene is drawn: raster, trace, path or radiosity [default: the scene's, or raster]
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub(crate) method: Option<Method>,
 
@@ -111,6 +115,10 @@ pub(crate) struct DrawingArguments {
     /// Makes all light stronger or weaker: each stop up doubles it, each stop down halves it
     #[arg(long, value_name = "STOPS", value_parser = stops, default_value = "0", allow_hyphen_values = true)]
     pub(crate) exposure: f64,
+
+    /// What becomes of light brighter than white
+    #[arg(long, value_enum, value_name = "CURVE", default_value_t)]
+    pub(crate) tone_map: ToneMapChoice,
 
     /// Which surfaces are left out for being turned away
     #[arg(long, value_enum, value_name = "WHICH", default_value_t)]
@@ -178,10 +186,8 @@ fn method(text: &str) -> Result<Method, String> {
         "raster" => Ok(Method::Raster),
         "trace" => Ok(Method::Trace),
         "path" => Ok(Method::Path),
-        "radiosity" => {
-            Err(format!("drawing by {text} is not built into this version; it has: raster, trace, path"))
-        }
-        _ => Err("the methods are: raster, trace, path".to_owned()),
+        "radiosity" => Ok(Method::Radiosity),
+        _ => Err("the methods are: raster, trace, path, radiosity".to_owned()),
     }
 }
 
@@ -230,6 +236,28 @@ pub(crate) enum RasterChoice {
     Scanline,
 }
 
+/// What becomes of light brighter than white.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ToneMapChoice {
+    /// It is cut off; pictures of floats keep it
+    #[default]
+    None,
+    /// Reinhard's curve: all of it fits below white
+    Reinhard,
+    /// A curve with a foot and a shoulder, as films have it
+    Filmic,
+}
+
+impl From<ToneMapChoice> for ToneMap {
+    fn from(choice: ToneMapChoice) -> Self {
+        match choice {
+            ToneMapChoice::None => Self::None,
+            ToneMapChoice::Reinhard => Self::Reinhard,
+            ToneMapChoice::Filmic => Self::Filmic,
+        }
+    }
+}
+
 /// Surfaces that are left out for being turned away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CullChoice {
@@ -259,6 +287,9 @@ pub(crate) enum FilterChoice {
 /// Samples per pixel when antialiasing is asked for without a number.
 const SUPER_SAMPLES: u32 = 4;
 
+/// Most samples per pixel that radiosity takes because a scene says so.
+const MOST_HINTED: u32 = 4;
+
 /// Most samples per pixel.
 const MOST_SAMPLES: u32 = 256;
 
@@ -273,12 +304,16 @@ impl Arguments {
         lines: bool,
     ) -> Result<Settings, Failure> {
         let method = self.method(hints, lines);
+        // Samples against noise are not needed where there is none.
+        let most = if method == Method::Radiosity { MOST_HINTED } else { u32::MAX };
+        let hints = &RenderHints { samples: hints.samples.map(|n| n.min(most)), ..hints.clone() };
         if lines && method != Method::Raster {
             return Err(Failure::usage("svg holds line drawings, which the method raster makes; write png"));
         }
         self.tracing.check(method)?;
         self.check_channel(method)?;
         let measures = self.output.channel != ChannelChoice::Color;
+        self.radiosity.check(method)?;
         let hinted = self.view.viewpoint().or_else(|| hints.camera.clone().map(Viewpoint::Camera));
         Ok(Settings {
             size: self.output.size.map(|s| [s.width, s.height]).or(hints.size),
@@ -288,6 +323,7 @@ impl Arguments {
             moment: self.view.moment(hints.time),
             method,
             tracing: self.tracing(method, hints)?,
+            radiosity: self.radiosity.settings(self.drawing.exposure),
             drawing: pipeline::Settings {
                 shading: self.shading(method, shading)?,
                 samples: if measures { 1 } else { self.drawing.samples_per_pixel(method, hints.samples)? },
@@ -298,12 +334,25 @@ impl Arguments {
         })
     }
 
+    fn time_limit(&self) -> Option<Duration> {
+        match self.view.time {
+            Some(Time::Limit(limit)) => Some(limit),
+            _ => self.tracing.time_limit,
+        }
+    }
+
+    /// Where light is read from and kept.
+    pub(super) fn light_files(&self) -> Result<LightFiles, Failure> {
+        self.radiosity.light.files(self.time_limit())
+    }
+
     /// The method: the option's, or the scene's.
     fn method(&self, hints: &RenderHints, lines: bool) -> Method {
         let hinted = match hints.method {
             Some(MethodHint::Trace) => Method::Trace,
             Some(MethodHint::Path) => Method::Path,
-            Some(MethodHint::Raster | MethodHint::Radiosity) | None => Method::Raster,
+            Some(MethodHint::Radiosity) => Method::Radiosity,
+            Some(MethodHint::Raster) | None => Method::Raster,
         };
         // Lines, one rasterizer or the other, and what only it draws ask for raster, whatever the scene says.
         let measures = self.output.channel != ChannelChoice::Color;
@@ -350,10 +399,8 @@ impl Arguments {
         if method == Method::Raster {
             return Ok(Tracing::default());
         }
-        let limit = match self.view.time {
-            Some(Time::Limit(limit)) => Some(limit),
-            _ => self.tracing.time_limit,
-        };
+        // Of radiosity, light is limited in time, not samples.
+        let limit = self.time_limit().filter(|_| method != Method::Radiosity);
         let (aa, samples, seed) = (self.drawing.aa, self.drawing.samples, self.running.seed);
         self.tracing.settings(method, aa, samples, limit, seed, hints)
     }
@@ -405,10 +452,14 @@ impl DrawingArguments {
     }
 
     fn samples_per_pixel(&self, method: Method, hint: Option<u32>) -> Result<u32, Failure> {
-        if method != Method::Raster {
+        if !matches!(method, Method::Raster | Method::Radiosity) {
             return Ok(1);
         }
         match (self.aa, self.samples) {
+            // Rays have more ways; what the pipeline does with them is close enough.
+            (Some(aa), samples) if method == Method::Radiosity && aa != AntialiasingChoice::None => {
+                Ok(samples.unwrap_or(SUPER_SAMPLES).min(MOST_SAMPLES))
+            }
             (Some(AntialiasingChoice::None), Some(n)) if n > 1 => Err(Failure::usage(format!(
                 "--aa none draws one sample a pixel; leave out --samples {n} or --aa none"
             ))),

@@ -5,13 +5,14 @@ mod explain;
 mod exposure;
 mod partial;
 mod picture;
+mod radiosity;
 mod tracing;
 
 use std::borrow::Cow;
 use std::path::Path;
 
-use senca::io::toml_scene::{MethodHint, SceneFile};
-use senca::pipeline::{Channel, Control, RenderError};
+use senca::io::toml_scene::SceneFile;
+use senca::pipeline::{Channel, Control};
 use senca::{Error, Method, Report, Scene, Settings};
 
 pub(crate) use arguments::Arguments;
@@ -22,8 +23,8 @@ use picture::Target;
 use crate::cli::input::read_scene_and_hints;
 use crate::cli::output::{self, tell};
 use crate::cli::{
-    Failure, Interrupt, Progress, Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles, peak_bytes,
-    use_threads,
+    Failure, Interrupt, Progress, RadiosityStats, Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles,
+    peak_bytes, use_threads,
 };
 
 /// Draws the scene and writes the picture.
@@ -41,30 +42,41 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     use_threads(running.threads)?;
     let interrupt = Interrupt::listen();
     let SceneFile { mut scene, render: hints } = read_scene_and_hints(&arguments.scene)?;
-    exposure::expose(&mut scene, arguments.drawing.exposure);
     let shading = target.shading(hints.shading.map(shading_of_hint));
     let settings = arguments.settings(&hints, shading, target.is_drawing())?;
+    if settings.method != Method::Radiosity {
+        exposure::expose(&mut scene, arguments.drawing.exposure);
+    }
     if !running.quiet {
         tell_warnings(&arguments.scene, &scene);
-        tell_method(&arguments.scene, hints.method.filter(|_| arguments.drawing.method.is_none()));
     }
     if let Some((path, pixel)) = explanation {
-        let failure = |error: &Error| failure(&arguments.scene, error);
+        let failure = |error: &Error| Failure::of_scene(&arguments.scene, error);
         return explain::run(scene, &settings, pixel, path, &interrupt, failure);
     }
     let partial = Partial::of(&arguments.tracing)?;
+    let light = arguments.light_files()?;
     let mut seconds = Seconds { load: watch.lap(), ..Seconds::default() };
 
     let progress = Progress::new(running.quiet);
     let report_progress = |done| progress.report(done);
     let control = Control { progress: Some(&report_progress), cancel: Some(interrupt.flag()) };
-    let drawn = target.draw(Cow::Owned(scene), &settings, &control, &partial, &interrupt);
+    let drawn = match settings.method {
+        Method::Radiosity => radiosity::draw(arguments, &light, scene, &settings, &control, &interrupt)
+            .map(|(image, report)| target.drawn(image, report)),
+        _ => target.draw(Cow::Owned(scene), &settings, &control, &partial, &interrupt).map_err(|error| {
+            match error {
+                Error::Partial(_) => Failure::input(format!("{}: {error}", partial.name())),
+                _ => Failure::of_scene(&arguments.scene, &error),
+            }
+        }),
+    };
     progress.finish();
     partial.outcome()?;
-    let drawn = drawn.map_err(|error| match error {
-        Error::Partial(_) => Failure::input(format!("{}: {error}", partial.name())),
-        _ => failure(&arguments.scene, &error),
-    })?;
+    let mut drawn = drawn?;
+    if let Some(warning) = radiosity::warning(&drawn.report).filter(|_| !running.quiet) {
+        tell(&format!("senca: {}: warning: {warning}", arguments.scene.display()));
+    }
     if !running.quiet && shows_nothing(&settings, &drawn.report) {
         tell(&format!(
             "senca: {}: warning: nothing of the scene is in the picture",
@@ -81,6 +93,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.drawing.exposure - stops
         ));
     }
+    drawn.map_tones(arguments.drawing.tone_map.into());
     seconds.prepare = drawn.report.prepare_seconds + drawn.report.drawing.seconds.prepare;
     seconds.render = (watch.lap() - seconds.prepare).max(0.0);
 
@@ -113,30 +126,10 @@ fn shows_nothing(settings: &Settings, report: &Report) -> bool {
     whole && !settings.drawing.shading.is_lines() && report.drawing.pixels_shaded == 0
 }
 
-/// Says that the scene's own method is not there, where it is not.
-fn tell_method(path: &Path, method: Option<MethodHint>) {
-    if method == Some(MethodHint::Radiosity) {
-        tell(&format!(
-            "senca: {}: warning: the scene asks for method radiosity, which is not built into this version; \
-             it is drawn by raster",
-            path.display()
-        ));
-    }
-}
-
 /// Says what the reader found odd.
 fn tell_warnings(path: &Path, scene: &Scene) {
     for warning in &scene.warnings {
         tell(&format!("senca: {}: warning: {}", path.display(), warning.0));
-    }
-}
-
-/// How the command ends for an error of the library.
-fn failure(path: &Path, error: &Error) -> Failure {
-    match error {
-        Error::Render(RenderError::Cancelled) => Failure::Interrupted,
-        error if error.is_usage() => Failure::usage(error),
-        error => Failure::input(format!("{}: {error}", path.display())),
     }
 }
 
@@ -159,6 +152,7 @@ fn stats(seconds: Seconds, report: &Report, size: [u32; 2], settings: &senca::Se
         },
         samples: report.tracing.map_or(settings.drawing.samples, |t| t.samples_per_pixel),
         tracing: report.tracing.as_ref().map(TracingStats::of),
+        radiosity: report.radiosity.as_ref().map(RadiosityStats::of),
         peak_bytes: peak_bytes(),
     }
 }

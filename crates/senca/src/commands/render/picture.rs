@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use senca::io::images::{PictureFormat, PictureOptions, encode};
 use senca::pipeline::{Control, Shading};
-use senca::{Error, Image, Method, Report, Scene, Settings, false_color, render_with};
+use senca::{Error, Image, Method, Report, Scene, Settings, ToneMap, false_color, render_with};
 
 use super::Arguments;
 use super::arguments::ChannelChoice;
@@ -89,6 +89,16 @@ impl Target {
         &self.path
     }
 
+    /// A picture that was drawn.
+    pub(super) fn drawn(&self, image: Image, report: Report) -> Drawn {
+        let format = match self.format {
+            Format::Pixels(format) => format,
+            Format::Svg => PictureFormat::Png,
+        };
+        let size = [image.width(), image.height()];
+        Drawn { content: Content::Pixels(image, format), samples_map: None, report, size }
+    }
+
     /// Draws the scene for this target.
     pub(super) fn draw(
         &self,
@@ -130,6 +140,13 @@ impl Drawn {
         match &self.content {
             Content::Pixels(image, _) => Some(image),
             Content::Svg(_) => None,
+        }
+    }
+
+    /// Maps the tones of pixels.
+    pub(super) fn map_tones(&mut self, tone_map: ToneMap) {
+        if let Content::Pixels(image, _) = &mut self.content {
+            tone_map.apply(image);
         }
     }
 

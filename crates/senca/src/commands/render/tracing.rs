@@ -191,6 +191,10 @@ impl TracingArguments {
                 Some(option) => refuse(option, "the method trace"),
                 None => Ok(()),
             },
+            Method::Radiosity => match (&self.resume, &self.samples_map, &self.explain) {
+                (None, None, None) => Ok(()),
+                _ => refuse("--resume, --samples-map and --explain", "the method trace"),
+            },
             Method::Trace => Ok(()),
         }
     }

@@ -1,0 +1,207 @@
+//! Light that is computed, or read from a file, or kept in one.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum, ValueHint};
+use senca::light::book::FactorMethod;
+use senca::light::{HierarchySettings, MeshSettings, Solution};
+use senca::pipeline::Control;
+use senca::{
+    ComputedLight, Error, RadiositySettings, Scene, Settings, Solver, compute_light, scene_light_fingerprint,
+};
+
+use super::output::{check_writable, is_standard};
+use super::values::{positive, share};
+use super::{Failure, Interrupt};
+
+/// How light is computed, and the files that keep it.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Light (method radiosity)")]
+pub(crate) struct LightArguments {
+    /// How light is computed [default: hierarchical]
+    #[arg(long, value_enum, value_name = "SOLVER")]
+    pub(crate) solver: Option<SolverChoice>,
+
+    /// Longest edge of a patch to begin with, in world units [default: polygons are left whole, and
+    /// divided where light asks for it; for gauss-seidel 1/12 of the scene]
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
+    pub(crate) patch_size: Option<f64>,
+
+    /// Shortest edge that patches are divided to, in world units [default: 1/400 of the scene]
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
+    pub(crate) smallest_patch: Option<f64>,
+
+    /// Light that a link between two patches may be wrong by, as a share of all [default: 0.00003]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) link_error: Option<f64>,
+
+    /// How gauss-seidel finds form factors [default: ray-cast]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    pub(crate) form_factors: Option<FormFactorChoice>,
+
+    /// Takes the light saved in this file, without computing it
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) solution: Option<PathBuf>,
+
+    /// Saves the light in this file, for more pictures; after Ctrl-C, too, as far as it has come
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "solution")]
+    pub(crate) save_solution: Option<PathBuf>,
+}
+
+/// The methods to compute light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SolverChoice {
+    /// Links between patches and groups of them, of any size
+    Hierarchical,
+    /// The book's: form factors between all patches, and relaxation
+    GaussSeidel,
+}
+
+/// The ways to find form factors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FormFactorChoice {
+    /// The closed form, times the share of rays that pass
+    RayCast,
+    /// Half cubes of 50 cells
+    Hemicube,
+}
+
+impl LightArguments {
+    /// An option that was given, if any.
+    pub(crate) fn any(&self) -> Option<&'static str> {
+        let given = [
+            ("--solver", self.solver.is_some()),
+            ("--patch-size", self.patch_size.is_some()),
+            ("--smallest-patch", self.smallest_patch.is_some()),
+            ("--link-error", self.link_error.is_some()),
+            ("--form-factors", self.form_factors.is_some()),
+            ("--solution", self.solution.is_some()),
+            ("--save-solution", self.save_solution.is_some()),
+        ];
+        given.iter().find(|(_, given)| *given).map(|(name, _)| *name)
+    }
+
+    /// Refuses options of one solver where the other one is chosen.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let book = self.solver == Some(SolverChoice::GaussSeidel);
+        match (book, self.link_error, self.form_factors) {
+            (true, Some(_), _) => Err(Failure::usage("--link-error belongs to --solver hierarchical")),
+            (false, _, Some(_)) => Err(Failure::usage("--form-factors belongs to --solver gauss-seidel")),
+            _ => Ok(()),
+        }
+    }
+
+    /// The library's settings, as far as computing goes; `exposure` in stops.
+    pub(crate) fn settings(&self, exposure: f64) -> RadiositySettings {
+        let standard = HierarchySettings::default();
+        RadiositySettings {
+            solver: match self.solver {
+                Some(SolverChoice::Hierarchical) | None => Solver::Hierarchical,
+                Some(SolverChoice::GaussSeidel) => Solver::GaussSeidel,
+            },
+            factors: match self.form_factors {
+                Some(FormFactorChoice::Hemicube) => FactorMethod::HEMICUBE,
+                Some(FormFactorChoice::RayCast) | None => FactorMethod::default(),
+            },
+            mesh: MeshSettings { patch_size: self.patch_size, ..MeshSettings::default() },
+            hierarchy: HierarchySettings {
+                threshold: self.link_error.unwrap_or(standard.threshold),
+                smallest_edge: self.smallest_patch,
+                ..standard
+            },
+            exposure: exposure.exp2() as f32,
+            ..RadiositySettings::default()
+        }
+    }
+
+    /// Where light is read from and kept.
+    pub(crate) fn files(&self, time_limit: Option<Duration>) -> Result<LightFiles, Failure> {
+        LightFiles::of(self.solution.as_deref(), self.save_solution.as_deref(), time_limit)
+    }
+}
+
+/// How often the clock is looked at.
+const TICK: Duration = Duration::from_millis(20);
+
+/// Where light comes from, and where it is kept.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LightFiles {
+    solution: Option<(PathBuf, Vec<u8>)>,
+    save: Option<PathBuf>,
+    time_limit: Option<Duration>,
+}
+
+impl LightFiles {
+    /// As the options say: what is to be read is read, and what is to be written can be.
+    fn of(
+        solution: Option<&Path>,
+        save: Option<&Path>,
+        time_limit: Option<Duration>,
+    ) -> Result<Self, Failure> {
+        if let Some(path) = save {
+            if is_standard(path) {
+                return Err(Failure::usage("--save-solution needs the name of a file"));
+            }
+            check_writable(path)?;
+        }
+        let read = |path: &Path| match std::fs::read(path) {
+            Ok(bytes) => Ok((path.to_owned(), bytes)),
+            Err(error) => Err(Failure::input(format!("{}: {error}", path.display()))),
+        };
+        Ok(Self { solution: solution.map(read).transpose()?, save: save.map(Path::to_owned), time_limit })
+    }
+
+    /// The light of the scene read from `name`: from the file, or computed, and then saved where that is
+    /// asked for.
+    pub(crate) fn light(
+        &self,
+        name: &Path,
+        scene: &Scene,
+        settings: &Settings,
+        control: &Control<'_>,
+        interrupt: &Interrupt,
+    ) -> Result<Solution, Failure> {
+        let failure = |error: Error| Failure::of_scene(name, &error);
+        if let Some((path, bytes)) = &self.solution {
+            let fingerprint = scene_light_fingerprint(scene, settings).map_err(failure)?;
+            let refused = |error| Failure::input(format!("{}: {error}", path.display()));
+            return Solution::load(bytes, Some(fingerprint)).map_err(refused);
+        }
+        let light = self.compute(scene, settings, control, interrupt).map_err(failure)?;
+        if let Some(path) = &self.save {
+            let bytes = light.solution.save(light.fingerprint);
+            // Written after Ctrl-C, too: that is what it is for.
+            interrupt.while_writing(|| senca::io::write_file(path, &bytes))?;
+        }
+        if interrupt.is_raised() { Err(Failure::Interrupted) } else { Ok(light.solution) }
+    }
+
+    /// Computes until it is done, the time is up, or Ctrl-C.
+    fn compute(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        control: &Control<'_>,
+        interrupt: &Interrupt,
+    ) -> Result<ComputedLight, Error> {
+        let Some(limit) = self.time_limit else {
+            return compute_light(scene, settings, control, &mut |_| {});
+        };
+        let (stop, done) = (AtomicBool::new(false), AtomicBool::new(false));
+        let start = Instant::now();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !done.load(Ordering::Relaxed) && start.elapsed() < limit && !interrupt.is_raised() {
+                    std::thread::sleep(TICK.min(limit));
+                }
+                stop.store(true, Ordering::Relaxed);
+            });
+            let control = Control { progress: control.progress, cancel: Some(&stop) };
+            let light = compute_light(scene, settings, &control, &mut |_| {});
+            done.store(true, Ordering::Relaxed);
+            light
+        })
+    }
+}

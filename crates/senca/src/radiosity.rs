@@ -1,0 +1,13 @@
+//! Pictures by radiosity: light computed once, shown from anywhere.
+
+mod measure;
+mod settings;
+mod show;
+mod solve;
+#[cfg(test)]
+mod tests;
+
+pub use measure::{bake_light, measure_lux};
+pub use settings::{Display, RadiositySettings, Show, Solver};
+pub use show::show_light;
+pub use solve::{ComputedLight, OnRound, compute_light, scene_light_fingerprint};

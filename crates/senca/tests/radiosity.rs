@@ -1,0 +1,150 @@
+//! Light by the command: computed, saved, shown, baked, measured.
+
+mod common;
+
+use std::path::Path;
+
+use common::{run_in, sample, told};
+use senca::io::Limits;
+use senca::io::images::decode_picture;
+
+/// A room of one box with a lamp in it, and a block.
+const ROOM: &str = r#"
+[camera]
+eye = [0, 0, 2.9]
+target = [0, 0, 0]
+fov = 50
+
+[[light]]
+kind = "point"
+position = [0, 1.5, 0]
+color = [1, 1, 1]
+attenuation = "inverse-square"
+
+[material.wall]
+color = [0.7, 0.7, 0.7]
+double_sided = true
+
+[[object]]
+name = "room"
+shape = "box"
+size = [6, 4, 6]
+material = "wall"
+
+[[object]]
+name = "block"
+shape = "box"
+size = 1
+translate = [0, -1.5, 0]
+material = "wall"
+"#;
+
+/// Options that make light quick and coarse.
+const COARSE: [&str; 2] = ["--link-error", "0.01"];
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("room.toml"), ROOM).expect("written");
+    folder
+}
+
+fn run(folder: &Path, command: &str) -> std::process::Output {
+    run_in(folder, &command.split_whitespace().collect::<Vec<_>>())
+}
+
+fn succeeds(folder: &Path, command: &str) -> String {
+    let output = run(folder, command);
+    assert!(output.status.success(), "{command}: {}", told(&output));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn light_is_computed_once_and_shown_twice() {
+    let folder = folder();
+    let folder = folder.path();
+    let render = "render room.toml --method radiosity --size 24x24";
+    let coarse = COARSE.join(" ");
+    succeeds(folder, &format!("{render} {coarse} -o a.pfm --save-solution room.light --stats a.json"));
+    let stats = std::fs::read_to_string(folder.join("a.json")).expect("figures");
+    let stats: serde_json::Value = serde_json::from_str(&stats).expect("JSON");
+    assert!(stats["patches"].as_u64().is_some_and(|n| n > 10), "{stats}");
+    assert!(stats["energy_error"].as_f64().is_some_and(|e| e < 1e-2), "{stats}");
+    succeeds(folder, &format!("{render} -o b.pfm --solution room.light"));
+    let read = |name: &str| std::fs::read(folder.join(name)).expect("a picture");
+    assert!(read("a.pfm") == read("b.pfm"), "the same light gives the same picture");
+    succeeds(folder, &format!("{render} -o c.png --solution room.light --eye 1,1,2 --show false-color"));
+    let picture = decode_picture("c.png", &read("c.png"), &Limits::default()).expect("a picture");
+    assert!(picture.width() > 24, "with a scale");
+}
+
+#[test]
+fn light_of_other_scenes_and_other_files_is_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    let coarse = COARSE.join(" ");
+    succeeds(
+        folder,
+        &format!(
+            "render room.toml --method radiosity --size 8x8 {coarse} --save-solution room.light -o a.png"
+        ),
+    );
+    std::fs::write(folder.join("other.toml"), ROOM.replace("size = 1\n", "size = 2\n")).expect("written");
+    let refused = run(folder, "render other.toml --method radiosity --solution room.light -o b.png");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(told(&refused).contains("room.light: belongs to another scene"), "{}", told(&refused));
+    std::fs::write(folder.join("bad.light"), b"SENCALIT and nothing else").expect("written");
+    let refused = run(folder, "render room.toml --method radiosity --solution bad.light -o b.png");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(!folder.join("b.png").exists());
+    let usage = run(folder, "render room.toml --method trace --solution room.light -o b.png");
+    assert_eq!(usage.status.code(), Some(2), "{}", told(&usage));
+}
+
+#[test]
+fn baked_models_can_be_read_and_drawn() {
+    let folder = folder();
+    let folder = folder.path();
+    let coarse = COARSE.join(" ");
+    succeeds(folder, &format!("bake room.toml -o colors.glb {coarse}"));
+    succeeds(folder, &format!("bake room.toml -o map.glb {coarse} --lightmap 64"));
+    for name in ["colors.glb", "map.glb"] {
+        let info = succeeds(folder, &format!("info {name} --json"));
+        let info: serde_json::Value = serde_json::from_str(&info).expect("JSON");
+        assert!(info["triangles"].as_u64().is_some_and(|n| n >= 24), "{name}: {info}");
+        succeeds(folder, &format!("render {name} --size 16x16 -o {name}.png"));
+    }
+    let usage = run(folder, "bake room.toml -o room.obj");
+    assert_eq!(usage.status.code(), Some(2));
+}
+
+/// A lamp of intensity 1 at height 3.5 above the floor: pi lux over the square of the distance below it,
+/// and more from the walls.
+#[test]
+fn lux_is_measured_on_a_plane() {
+    let folder = folder();
+    let folder = folder.path();
+    let coarse = COARSE.join(" ");
+    let command =
+        format!("lux room.toml {coarse} --height 1.5 --spacing 2 -o plane.csv --picture plane.png --json");
+    let summary: serde_json::Value = serde_json::from_str(&succeeds(folder, &command)).expect("JSON");
+    let direct = std::f64::consts::PI / 4.0;
+    assert_eq!((summary["columns"].as_u64(), summary["rows"].as_u64()), (Some(3), Some(3)));
+    let most = summary["most"].as_f64().expect("a number");
+    assert!(most > direct && most < 4.0 * direct, "{summary}");
+    let csv = std::fs::read_to_string(folder.join("plane.csv")).expect("numbers");
+    assert_eq!(csv.lines().count(), 10);
+    assert!(folder.join("plane.png").exists());
+    let bad = run(folder, "lux room.toml --spacing 0.0000001");
+    assert_eq!(bad.status.code(), Some(2), "{}", told(&bad));
+}
+
+#[test]
+fn the_sample_of_the_cornell_box_can_be_shown_by_radiosity() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let cornell = sample("cornell.toml");
+    let command = format!(
+        "render {} --method radiosity --link-error 0.01 --size 16x16 --samples 1 --tone-map reinhard -o a.png",
+        cornell.display()
+    );
+    succeeds(folder.path(), &command);
+}
