@@ -233,7 +233,7 @@ fn open_exchange(a: &Side, b: &Side) -> f64 {
     let mut sum = 0.0;
     for &[u, weight_u] in places {
         for &[v, weight_v] in places {
-            let (place, stretch) = smooth_place(&small.shape, [u, v]);
+            let (place, stretch) = smooth_place(small, [u, v]);
             let factor = point_to_polygon(place, small.normal, large.shape.corners());
             sum += weight_u * weight_v * factor * stretch;
         }
@@ -243,19 +243,20 @@ fn open_exchange(a: &Side, b: &Side) -> f64 {
 
 /// A place by a smooth map of the unit square, and how much larger than on the mean a piece of the
 /// square becomes there.
-fn smooth_place(shape: &PatchPolygon, [u, v]: [f64; 2]) -> (DVec3, f64) {
-    match shape.corners() {
+fn smooth_place(side: &Side, [u, v]: [f64; 2]) -> (DVec3, f64) {
+    match side.shape.corners() {
         &[a, b, c] => (a * (1.0 - u) + (b * (1.0 - v) + c * v) * u, 2.0 * u),
-        _ => (shape.place(u, v), stretch(shape, [u, v])),
+        _ => (side.shape.place(u, v), stretch(side, [u, v])),
     }
 }
 
 /// How much larger than on the mean a piece of the unit square becomes at (u, v).
-fn stretch(shape: &PatchPolygon, [u, v]: [f64; 2]) -> f64 {
-    let &[a, b, c, d] = shape.corners() else { return 1.0 };
+#[inline]
+fn stretch(side: &Side, [u, v]: [f64; 2]) -> f64 {
+    let &[a, b, c, d] = side.shape.corners() else { return 1.0 };
     let along = (b - a).lerp(c - d, v);
     let across = (d - a).lerp(c - b, u);
-    along.cross(across).length() / shape.normal_and_area().1
+    along.cross(across).length() / side.area
 }
 
 /// Cosine between normals of polygons that are as good as parallel and face apart.
@@ -280,10 +281,8 @@ fn visible_share(a: &Side, b: &Side, occluders: &Occluders, rays: u32) -> f64 {
         let [u, v, s, t] = spread(ray);
         let (p, q) = (a.shape.place(u, v), b.shape.place(s, t));
         let near = (p.distance_squared(q) / closest).min(1.0);
-        let weight = differential(p, a.normal, q, b.normal, 1.0)
-            * near
-            * stretch(&a.shape, [u, v])
-            * stretch(&b.shape, [s, t]);
+        let weight =
+            differential(p, a.normal, q, b.normal, 1.0) * near * stretch(a, [u, v]) * stretch(b, [s, t]);
         if weight <= 0.0 {
             continue;
         }
