@@ -132,7 +132,9 @@ struct Exposure {
 impl Exposure {
     #[inline]
     fn add(&mut self, color: [f32; 4], weight: f32) {
-        self.sum = std::array::from_fn(|k| self.sum[k] + weight * color[k]);
+        for (sum, component) in self.sum.iter_mut().zip(color) {
+            *sum += weight * component;
+        }
         self.weight += weight;
         self.count += 1;
     }

@@ -31,6 +31,7 @@ impl Default for Decoding {
 #[derive(Clone, Debug)]
 pub(crate) struct BoundTexture<'s> {
     image: &'s ImageData,
+    size: [u32; 2],
     /// Meaning of the colour bytes, and of alpha.
     color: Arc<[f32; 256]>,
     alpha: Arc<[f32; 256]>,
@@ -58,6 +59,7 @@ impl<'s> BoundTexture<'s> {
         let color = if space == ColorSpace::Srgb { &decoding.srgb } else { &decoding.linear };
         Some(Self {
             image,
+            size: image.size().into(),
             color: Arc::clone(color),
             alpha: Arc::clone(&decoding.linear),
             wrap: [texture.wrap_u, texture.wrap_v],
@@ -73,7 +75,7 @@ impl<'s> BoundTexture<'s> {
     pub(crate) fn sample(&self, texcoords: &[DVec2; 2]) -> [f32; 4] {
         let uv = texcoords[self.texcoord];
         let uv = self.uv_transform.map_or(uv, |transform| transform.transform_point2(uv));
-        let (width, height) = self.image.size();
+        let [width, height] = self.size;
         let (x, y) = (position(uv.x, width), position(uv.y, height));
         if self.nearest { self.texel(whole(x + 0.5), whole(y + 0.5)) } else { self.bilinear(x, y) }
     }
@@ -89,13 +91,14 @@ impl<'s> BoundTexture<'s> {
     /// The texel in column `x`, row `y`, which may lie outside the picture.
     #[inline]
     fn texel(&self, x: i64, y: i64) -> [f32; 4] {
-        let (width, height) = self.image.size();
+        let [width, height] = self.size;
         let (x, y) = (wrapped(self.wrap[0], x, width), wrapped(self.wrap[1], y, height));
         let index = y * width as usize + x;
         match self.image {
             ImageData::Rgba8 { texels, .. } => {
-                let [r, g, b, a] = texels.get(index).copied().unwrap_or_default().map(usize::from);
-                [self.color[r], self.color[g], self.color[b], self.alpha[a]]
+                let [r, g, b, a] = texels.get(index).copied().unwrap_or_default();
+                let of = |table: &[f32; 256], byte: u8| table[usize::from(byte)];
+                [of(&self.color, r), of(&self.color, g), of(&self.color, b), of(&self.alpha, a)]
             }
             ImageData::RgbaF32 { texels, .. } => texels.get(index).copied().unwrap_or_default(),
         }

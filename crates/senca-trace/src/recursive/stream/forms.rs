@@ -285,7 +285,7 @@ impl Forms {
             best.take(met & t.simd_gt(t_min), t, F::splat(simd, ball.rank));
         }
         for sheet in &self.sheets {
-            let t = sheet.meet(simd, o, d);
+            let Some(t) = sheet.meet(simd, o, d, live) else { continue };
             let rank = F::splat(simd, sheet.rank);
             let near = live & t.simd_gt(t_min) & best.is_before(t, rank);
             if near.any_true() {
@@ -382,9 +382,9 @@ impl Forms {
             }
         }
         for sheet in self.sheets.iter().filter(|sheet| sheet.opaque) {
-            let t = sheet.meet(simd, o, d);
-            let near = clear & t.simd_gt(zero) & t.simd_lt(t_max);
             tests += 1;
+            let Some(t) = sheet.meet(simd, o, d, clear) else { continue };
+            let near = clear & t.simd_gt(zero) & t.simd_lt(t_max);
             if near.any_true() {
                 clear &= !(near & sheet.holds(simd, o, d, t));
             }
@@ -466,11 +466,15 @@ impl Ball {
 }
 
 impl Sheet {
-    /// Where the lines meet the plane; infinite or no number where they are parallel to it.
+    /// Where the lines meet the plane, infinite or no number where they are parallel to it; `None` when
+    /// all live ones meet it behind their origin, if at all.
     #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, o: V<S>, d: V<S>) -> F<S> {
+    fn meet<S: Simd>(&self, simd: S, o: V<S>, d: V<S>, live: M<S>) -> Option<F<S>> {
         let normal = V::splat(simd, self.normal);
-        (F::splat(simd, self.distance) - normal.dot(o)) / normal.dot(d)
+        let (height, fall) = (F::splat(simd, self.distance) - normal.dot(o), normal.dot(d));
+        let zero = F::splat(simd, 0.0);
+        let ahead = height.simd_gt(zero) & fall.simd_gt(zero) | height.simd_lt(zero) & fall.simd_lt(zero);
+        (live & ahead).any_true().then_some(height / fall)
     }
 
     /// Whether the places at t are in the outline.

@@ -21,7 +21,7 @@ mod shade;
 #[cfg(test)]
 mod tests;
 
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, i64x8, prelude::*};
 use senca_math::glam::{DVec3, DVec4};
 use senca_math::{LinearRgb, ViewKind};
 
@@ -73,10 +73,11 @@ pub(super) struct Desk {
     /// Of each ray, where it meets something, the rank of that, or -1, and the hit, where it is of
     /// something that has no rank of its own.
     t: Vec<f64>,
-    rank: Vec<f64>,
+    rank: Vec<i64>,
     hits: Vec<Hit>,
     /// Numbers of the rays by what they meet.
     lists: [Vec<u32>; GROUPS],
+    lengths: [usize; GROUPS],
     /// Numbers of the rays that are handed over.
     handed: Vec<u32>,
     /// What each sample has gathered.
@@ -88,13 +89,16 @@ impl Desk {
         for rays in [&mut self.rays, &mut self.next, &mut self.again] {
             rays.clear(count);
         }
+        for list in &mut self.lists {
+            list.resize(list.len().max(count), 0);
+        }
         if self.t.len() < count + LANES {
             self.t.resize(count + LANES, 0.0);
-            self.rank.resize(count + LANES, 0.0);
+            self.rank.resize(count + LANES, 0);
             self.hits.resize(count + LANES, NO_HIT);
         }
-        self.sums.clear();
         self.sums.resize(count, [0.0; 4]);
+        self.sums.fill([0.0; 4]);
     }
 
     #[inline(always)]
@@ -273,7 +277,8 @@ impl Tracer<'_> {
             let hits = &mut hits[first..][..LANES];
             let found = stream.forms.closest(simd, self.world.objects(), &packet, live, hits, counters);
             found.t.store_slice(&mut t[first..][..LANES]);
-            found.rank.store_slice(&mut rank[first..][..LANES]);
+            let found: i64x8<S> = found.rank.to_int();
+            found.store_slice(&mut rank[first..][..LANES]);
         }
     }
 
@@ -283,10 +288,10 @@ impl Tracer<'_> {
         for number in 0..rays.len() {
             let hit = self.world.closest(&rays.ray(number), &mut pass.counts.work);
             (t[number], rank[number]) = match hit {
-                None => (f64::INFINITY, -1.0),
+                None => (f64::INFINITY, -1),
                 Some(hit) => {
                     hits[number] = hit;
-                    (hit.crossing.t, f64::from(stream.forms.rank_of(&hit)))
+                    (hit.crossing.t, i64::from(stream.forms.rank_of(&hit)))
                 }
             };
         }
@@ -297,18 +302,13 @@ impl Tracer<'_> {
         let Desk { rays, rank, lists, .. } = &mut *pass.desk;
         let count = rays.len();
         let mut lengths = [0; GROUPS];
-        for list in lists.iter_mut() {
-            list.resize(count + 1, 0);
-        }
         for (number, rank) in rank[..count].iter().enumerate() {
             // The rank of nothing is -1.
-            let group = usize::from(stream.groups[(*rank + 1.0) as usize]) % GROUPS;
+            let group = usize::from(stream.groups[(*rank + 1) as usize]) % GROUPS;
             lists[group][lengths[group]] = number as u32;
             lengths[group] += 1;
         }
-        for (list, length) in lists.iter_mut().zip(lengths) {
-            list.truncate(length);
-        }
+        pass.desk.lengths = lengths;
         self.leave_stream(pass);
     }
 
@@ -316,16 +316,13 @@ impl Tracer<'_> {
     fn leave_stream(&self, pass: &mut Pass<'_>) {
         let list = std::mem::take(&mut pass.desk.lists[LEAVING]);
         let covered = if self.sky.is_transparent() { 0.0 } else { 1.0 };
-        for &number in &list {
-            let rays = &pass.desk.rays;
-            let number = number as usize;
-            let (slot, [r, g, b]) = (rays.slot(number), rays.weight(number).map(|w| w as f32));
-            let direction = rays.direction(number);
+        for &number in &list[..pass.desk.lengths[LEAVING]] {
+            let (slot, weight, direction) = pass.desk.rays.leaving(number as usize);
             let (seen, alpha) = match pass.nest {
                 0 => (self.sky.in_row(pass.places[slot].row, direction).unwrap_or(LinearRgb::BLACK), covered),
                 _ => (self.sky.towards(direction), 0.0),
             };
-            pass.desk.add(slot, LinearRgb::new(r, g, b) * seen, alpha);
+            pass.desk.add(slot, weight * seen, alpha);
         }
         pass.desk.lists[LEAVING] = list;
     }
@@ -335,13 +332,12 @@ impl Tracer<'_> {
         let handed = std::mem::take(&mut desk.handed);
         for &number in &handed {
             let (rays, number) = (&desk.rays, number as usize);
-            let slot = rays.slot(number);
-            let [r, g, b] = rays.weight(number).map(|w| w as f32);
+            let (slot, weight, _) = rays.leaving(number);
             let pending = Pending {
                 ray: rays.ray(number),
                 kind: if nest == 0 { RayKind::Primary } else { RayKind::Reflected },
                 nest,
-                weight: LinearRgb::new(r, g, b),
+                weight,
                 open: if nest == 0 { 1.0 } else { 0.0 },
                 media: Media::default(),
                 distance: rays.distance(number),

@@ -1,6 +1,7 @@
 //! Rays side by side.
 
 use fearless_simd::{Simd, prelude::*};
+use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
 
 use super::lanes::{F, LANES, M, V, first_lanes};
@@ -76,9 +77,12 @@ impl Rays {
         (eight, first_lanes(simd, self.len - first))
     }
 
-    /// The rays of these numbers.
+    /// The rays of these numbers, which ascend.
     #[inline(always)]
     pub(super) fn gather<S: Simd>(&self, simd: S, numbers: &[u32; LANES]) -> Packet<S> {
+        if follow_each_other(numbers) {
+            return self.load(simd, numbers[0] as usize).0;
+        }
         packet(
             #[inline(always)]
             |k| gather(simd, &self.rows[k], numbers),
@@ -96,20 +100,16 @@ impl Rays {
         }
     }
 
-    pub(super) fn direction(&self, number: usize) -> DVec3 {
-        DVec3::new(self.rows[3][number], self.rows[4][number], self.rows[5][number])
-    }
-
-    pub(super) fn weight(&self, number: usize) -> [f64; 3] {
-        [7, 8, 9].map(|k| self.rows[k][number])
+    /// Number of the sample, the product of the coefficients, and the direction of a ray.
+    #[inline(always)]
+    pub(super) fn leaving(&self, number: usize) -> (usize, LinearRgb, DVec3) {
+        let [_, _, _, dx, dy, dz, _, r, g, b, _, slot] = &self.rows;
+        let weight = LinearRgb::new(r[number] as f32, g[number] as f32, b[number] as f32);
+        (slot[number] as usize, weight, DVec3::new(dx[number], dy[number], dz[number]))
     }
 
     pub(super) fn distance(&self, number: usize) -> f64 {
         self.rows[10][number]
-    }
-
-    pub(super) fn slot(&self, number: usize) -> usize {
-        self.rows[11][number] as usize
     }
 }
 
@@ -125,9 +125,18 @@ fn packet<S: Simd>(row: impl Fn(usize) -> F<S>) -> Packet<S> {
     }
 }
 
-/// The numbers at these places of a row.
+/// Whether ascending numbers follow each other without gaps.
+#[inline(always)]
+fn follow_each_other(numbers: &[u32; LANES]) -> bool {
+    numbers[LANES - 1] == numbers[0] + LANES as u32 - 1
+}
+
+/// The numbers at these places of a row, which ascend.
 #[inline(always)]
 pub(super) fn gather<S: Simd>(simd: S, row: &[f64], numbers: &[u32; LANES]) -> F<S> {
+    if follow_each_other(numbers) {
+        return F::from_slice(simd, &row[numbers[0] as usize..][..LANES]);
+    }
     F::from_fn(
         simd,
         #[inline(always)]

@@ -53,7 +53,7 @@ impl Tracer<'_> {
     #[inline(always)]
     pub(super) fn balls<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
         let list = std::mem::take(&mut pass.desk.lists[BALLS]);
-        for eight in list.chunks(LANES) {
+        for eight in list[..pass.desk.lengths[BALLS]].chunks(LANES) {
             let (rays, live, t, ranks) = meeting(simd, pass, eight);
             let looks = looks_of(simd, stream, &ranks);
             let numbers = Numbers::new(simd, stream, &ranks);
@@ -71,7 +71,7 @@ impl Tracer<'_> {
     #[inline(always)]
     pub(super) fn sheets<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
         let list = std::mem::take(&mut pass.desk.lists[SHEETS]);
-        for eight in list.chunks(LANES) {
+        for eight in list[..pass.desk.lengths[SHEETS]].chunks(LANES) {
             let (rays, live, t, ranks) = meeting(simd, pass, eight);
             let mut looks = looks_of(simd, stream, &ranks);
             let numbers = Numbers::new(simd, stream, &ranks);
@@ -152,7 +152,7 @@ impl Tracer<'_> {
         let mut seen = [None; LANES];
         let mut numbers = [0; LANES];
         let mut count = 0;
-        for &number in &list {
+        for &number in &list[..pass.desk.lengths[GENERAL]] {
             let Some(place) = self.look_at(stream, number as usize, pass) else { continue };
             (seen[count], numbers[count]) = (Some(place), number);
             count += 1;
@@ -162,6 +162,8 @@ impl Tracer<'_> {
             }
         }
         if count > 0 {
+            let first = numbers[0];
+            numbers[count..].fill(first);
             self.shade_general(simd, stream, pass, &numbers, &seen, count);
         }
         pass.desk.lists[GENERAL] = list;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fearless_simd::Level;
 use senca_math::{LinearRgb, View};
 use senca_scene::{Background, Camera, Scene};
 
@@ -102,5 +103,40 @@ fn all_samples_are_traced_as_by_the_plain_twin() {
                 assert!(off <= 8 + plain / 1000, "{}: {fast} rays, {plain}", path.display());
             }
         }
+    }
+}
+
+/// The tracer of a sample scene that goes the fast way.
+fn with_fast(name: &str, test: impl Fn(&mut Tracer<'_>)) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name);
+    let (scene, view, _) = scene_of(&path).expect("a scene with a view");
+    let world = World::new(&scene).expect("a world");
+    let mut tracer = Tracer::new(&world, &view, SIZE, scene.background, &RecursiveSettings::default());
+    assert!(tracer.stream.is_some(), "{name} goes the fast way");
+    test(&mut tracer);
+}
+
+#[test]
+fn every_simd_level_gives_the_same_bytes() {
+    for name in ["mirrors.toml", "materials.toml", "texture.toml", "shadows.toml", "csg.toml"] {
+        with_fast(name, |tracer| {
+            let (best, counts) = picture(tracer);
+            tracer.stream.as_mut().expect("the fast way").level = Level::baseline();
+            assert!(picture(tracer) == (best, counts), "{name}");
+        });
+    }
+}
+
+#[test]
+fn a_sample_does_not_depend_on_those_beside_it() {
+    for name in ["mirrors.toml", "materials.toml", "glass.toml"] {
+        with_fast(name, |tracer| {
+            let (together, _) = picture(tracer);
+            let (mut work, mut alone) = (Work::default(), Vec::new());
+            for places in places().chunks(37) {
+                tracer.sample_many(places, &mut work, &mut alone);
+            }
+            assert!(together == alone, "{name}");
+        });
     }
 }
