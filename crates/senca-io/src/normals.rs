@@ -36,7 +36,7 @@ pub(crate) fn fill_missing_normals(mesh: &mut Mesh) {
 /// what they put together; normals made from the faces would show each seam as an edge. Where it is one,
 /// the faces meet too sharply to share a normal anyway.
 pub(crate) fn join_doubled_points(mesh: &mut Mesh) {
-    if mesh.vertices.normal.is_empty() && mesh.faces.len() > 0 {
+    if mesh.vertices.normal.is_empty() && !mesh.faces.is_empty() {
         mesh.weld(0.0);
     }
 }

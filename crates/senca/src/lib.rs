@@ -3,6 +3,7 @@
 //! This crate is the front door: it names the rooms of the house and joins them. The rooms are
 //! crates of their own, reachable as modules here: [`math`], [`scene`], [`io`], [`shading`],
 //! [`raster`], [`pipeline`], [`mod@trace`] and [`light`] (radiosity).
+//! [`raster`], [`pipeline`], [`mod@trace`] and [`radiosity`].
 //!
 //! [`render`] draws a scene in one call; [`io::load`] reads one from a file of any format:
 //!
@@ -19,9 +20,9 @@
 
 mod error;
 mod false_color;
+mod lighting;
 mod line_drawing;
 mod prepare;
-mod radiosity;
 mod render;
 mod settings;
 mod tone_map;
@@ -29,12 +30,12 @@ mod traced;
 
 pub use error::Error;
 pub use false_color::false_color;
-pub use line_drawing::render_svg;
-pub use prepare::{Prepared, prepare};
-pub use radiosity::{
+pub use lighting::{
     ComputedLight, Display, OnRound, RadiositySettings, Show, Solver, bake_light, compute_light, measure_lux,
     scene_light_fingerprint, show_light,
 };
+pub use line_drawing::render_svg;
+pub use prepare::{Prepared, prepare};
 pub use render::{Report, render, render_with};
 pub use settings::{LookAt, Method, Moment, Settings, Tracing, Viewpoint};
 pub use tone_map::ToneMap;
@@ -46,7 +47,7 @@ pub use senca_io as io;
 pub use senca_math as math;
 pub use senca_math::Image;
 pub use senca_pipeline as pipeline;
-pub use senca_radiosity as light;
+pub use senca_radiosity as radiosity;
 pub use senca_raster as raster;
 pub use senca_scene as scene;
 pub use senca_scene::Scene;

@@ -7,8 +7,8 @@ use senca_math::Image;
 use senca_pipeline::Control;
 use senca_scene::{Background, Scene};
 
+use crate::lighting::{compute_light, show_light};
 use crate::prepare::{Prepared, default_background, prepare};
-use crate::radiosity::{compute_light, show_light};
 use crate::traced::{TraceJob, trace_with};
 use crate::{Error, Method, Settings};
 

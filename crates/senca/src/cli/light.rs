@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum, ValueHint};
-use senca::light::book::FactorMethod;
-use senca::light::{HierarchySettings, MeshSettings, Solution};
 use senca::pipeline::Control;
+use senca::radiosity::book::FactorMethod;
+use senca::radiosity::{HierarchySettings, MeshSettings, Solution};
 use senca::{
     ComputedLight, Error, RadiositySettings, Scene, Settings, Solver, compute_light, scene_light_fingerprint,
 };

@@ -69,7 +69,7 @@ pub(crate) struct RadiosityStats {
 
 impl RadiosityStats {
     /// Of a solution.
-    pub(crate) fn of(report: &senca::light::SolveReport) -> Self {
+    pub(crate) fn of(report: &senca::radiosity::SolveReport) -> Self {
         Self {
             polygons: report.polygons,
             patches: report.patches,

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use senca::io::images::{PictureFormat, PictureOptions, encode};
-use senca::light::false_color::{FalseColors, round_up};
-use senca::light::{LuxGrid, LuxReport};
 use senca::pipeline::Control;
+use senca::radiosity::false_color::{FalseColors, round_up};
+use senca::radiosity::{LuxGrid, LuxReport};
 use senca::{Method, Settings, measure_lux};
 use serde_json::json;
 

@@ -3,6 +3,7 @@
 mod bake;
 mod bench;
 mod convert;
+mod form_factor;
 mod info;
 mod lux;
 mod render;
@@ -34,6 +35,8 @@ enum Command {
     Bake(bake::Arguments),
     /// Measures illuminance in lux on a plane
     Lux(lux::Arguments),
+    /// Compares the methods for form factors on a known pair, or on a scene's patches
+    FormFactor(form_factor::Arguments),
     /// Measures this program on data it makes itself
     Bench(bench::Arguments),
 }
@@ -47,6 +50,7 @@ pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
         Command::ViewMatrix(arguments) => view_matrix::run(&arguments),
         Command::Bake(arguments) => bake::run(&arguments),
         Command::Lux(arguments) => lux::run(&arguments),
+        Command::FormFactor(arguments) => form_factor::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     }
 }
