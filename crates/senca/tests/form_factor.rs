@@ -111,7 +111,7 @@ fn mistakes_are_told_in_one_message() {
         (&["parallel", "1", "1", "1", "--method", "radiance"], 2, "hemicube"),
         (&["parallel", "1", "1", "1", "--patch-size", "1"], 2, "for scenes"),
         (&["samples/cornell.toml", "--patch-size", "0"], 1, "patch size"),
-        (&["samples/cornell.toml", "--patch-size", "0.001"], 1, "larger patches"),
+        (&["samples/cornell.toml", "--patch-size", "0.001"], 1, "16384 elements"),
     ];
     for (arguments, status, part) in cases {
         let output = run_in(&repository(), &[&["form-factor"], *arguments].concat());

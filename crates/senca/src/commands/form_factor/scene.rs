@@ -48,7 +48,10 @@ struct Report {
 pub(super) fn run(path: &Path, arguments: &Arguments, settings: &MethodSettings) -> Result<(), Failure> {
     let scene = read_scene(path)?;
     let name = path.display();
-    let mesh_settings = MeshSettings { patch_size: arguments.patch_size, ..MeshSettings::default() };
+    // Not many more than a matrix may have: those that are divided count too.
+    let max_elements = 2 * FormFactors::MAX_PATCHES;
+    let mesh_settings =
+        MeshSettings { patch_size: arguments.patch_size, max_elements, ..MeshSettings::default() };
     let refuse = |e: &dyn std::fmt::Display| Failure::input(format!("{name}: {e}"));
     let mesh = ElementMesh::of_scene(&scene, &mesh_settings).map_err(|e| refuse(&e))?;
     let leaves: Vec<u32> = mesh.leaves().collect();
