@@ -75,12 +75,12 @@ impl<'a> Probe<'a> {
     #[must_use]
     pub fn at(&self, place: DVec3, normal: DVec3, turn: f64) -> LinearRgb {
         let lamps = self.direct.at(self.occluders, place, normal);
-        let emitters = self.emitters.iter().map(|emitter| self.from_emitter(emitter, place, normal));
+        let emitters = self.emitters.iter().map(|emitter| self.light_of(emitter, place, normal));
         let known = emitters.fold(lamps, |sum, light| sum + light);
         known + self.reflected(place, normal, turn)
     }
 
-    fn from_emitter(&self, emitter: &Emitter, place: DVec3, normal: DVec3) -> LinearRgb {
+    fn light_of(&self, emitter: &Emitter, place: DVec3, normal: DVec3) -> LinearRgb {
         let factor = point_to_polygon(place, normal, emitter.shape.corners());
         if factor <= 0.0 {
             return LinearRgb::BLACK;

@@ -144,7 +144,7 @@ impl<'m> ElementFinder<'m> {
     fn penalty(&self, polygon: u32, wanted: &Wanted) -> Option<f32> {
         let surface = self.mesh.surface(polygon);
         let fits = surface.instance == wanted.instance && self.mesh.normal(polygon).dot(wanted.normal) > 0.0;
-        fits.then(|| if surface.material == wanted.material { 0.0 } else { 1.0 })
+        fits.then_some(if surface.material == wanted.material { 0.0 } else { 1.0 })
     }
 
     fn aside(&self, point: DVec3, reach: f64, wanted: &Wanted) -> Option<u32> {
