@@ -1,7 +1,7 @@
 //! Shows the Cornell box by a hierarchical solution with direct light found at each place, as a PFM
 //! picture, and tells how long it took.
 //!
-//! `cornell_gather OUT.pfm [SIZE] [THRESHOLD] [THREADS]`
+//! `cornell_gather OUT.pfm [SIZE] [THRESHOLD] [THREADS] [RINGS] [REACH] [LEAST]`
 
 #[path = "../../senca-trace/src/path/cornell.rs"]
 #[expect(dead_code, reason = "shared with others that use more of it")]
@@ -11,10 +11,11 @@ use std::error::Error;
 use std::time::Instant;
 
 use rayon::prelude::*;
+use senca_math::glam::DVec3;
 use senca_math::{Control, LinearRgb};
 use senca_radiosity::{
-    DirectGather, DirectLight, ElementMesh, GatherSettings, HierarchySettings, IndirectField, MeshSettings,
-    Occluders, solve_hierarchy,
+    CacheSettings, DirectGather, DirectLight, ElementMesh, GatherSettings, HierarchySettings, MeshSettings,
+    Occluders, ReflectedGather, regather_reflected, solve_hierarchy,
 };
 use senca_trace::PrimaryRays;
 
@@ -30,27 +31,40 @@ struct Picture<'a> {
     mesh: &'a ElementMesh,
     occluders: &'a Occluders,
     direct: DirectGather<'a>,
-    indirect: IndirectField<'a>,
+    reflected: ReflectedGather<'a>,
     size: u32,
 }
 
 impl Picture<'_> {
-    fn at(&self, x: f64, y: f64, key: u64) -> Shown {
+    /// Polygon, place and normal.
+    fn seen(&self, x: f64, y: f64) -> Option<(u32, DVec3, DVec3)> {
         let ray = self.rays.through(x, y);
-        let hit = self.occluders.closest(ray.origin, ray.direction).filter(|hit| hit.front);
-        let Some(hit) = hit else {
-            return Shown { color: [0.0; 3], polygon: u32::MAX };
-        };
-        let surface = self.mesh.surface(hit.polygon);
+        let hit = self.occluders.closest(ray.origin, ray.direction).filter(|hit| hit.front)?;
         let normal = self.mesh.normal(hit.polygon);
         // Onto the plane of the polygon, which single precision missed by a little.
         let corner = self.mesh.shape(hit.polygon).corners()[0];
         let t = normal.dot(corner - ray.origin) / normal.dot(ray.direction);
-        let place = ray.origin + t * ray.direction;
-        let direct = self.direct.at(place, normal, key);
-        let incident: LinearRgb = direct + self.indirect.at(hit.polygon, place);
+        Some((hit.polygon, ray.origin + t * ray.direction, normal))
+    }
+
+    fn at(&self, x: f64, y: f64, key: u64) -> Shown {
+        let Some((polygon, place, normal)) = self.seen(x, y) else {
+            return Shown { color: [0.0; 3], polygon: u32::MAX };
+        };
+        let surface = self.mesh.surface(polygon);
+        let incident: LinearRgb = self.direct.at(place, normal, key) + self.reflected.at(place, normal);
         let shown = surface.emission + surface.reflectance * incident;
-        Shown { color: shown.to_array(), polygon: hit.polygon }
+        Shown { color: shown.to_array(), polygon }
+    }
+
+    fn prepare(&mut self) -> Result<(), Box<dyn Error>> {
+        let n = self.size as usize;
+        let of = |i: usize| self.seen((i % n) as f64 + 0.5, (i / n) as f64 + 0.5);
+        let seen: Vec<Option<(u32, DVec3, DVec3)>> = (0..n * n).into_par_iter().map(of).collect();
+        let places: Vec<(DVec3, DVec3)> =
+            seen.iter().flatten().map(|&(_, place, normal)| (place, normal)).collect();
+        self.reflected.prepare(&places, &Control::default()).map_err(|_| "cancelled")?;
+        Ok(())
     }
 
     /// One sample per pixel, then more where neighbours are different.
@@ -100,7 +114,7 @@ impl Picture<'_> {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [out, rest @ ..] = &arguments[..] else {
-        return Err("cornell_gather OUT.pfm [SIZE] [THRESHOLD] [THREADS]".into());
+        return Err("cornell_gather OUT.pfm [SIZE] [THRESHOLD] [THREADS] [RINGS] [REACH] [LEAST]".into());
     };
     let size = rest.first().map_or(Ok(512), |text| text.parse())?;
     let mut settings = HierarchySettings::default();
@@ -108,24 +122,42 @@ fn main() -> Result<(), Box<dyn Error>> {
         settings.threshold = text.parse()?;
     }
     let threads = rest.get(2).map_or(Ok(0), |text| text.parse())?;
+    let mut cache = CacheSettings::default();
+    if let Some(text) = rest.get(3) {
+        cache.rings = text.parse()?;
+    }
+    if let Some(text) = rest.get(4) {
+        cache.reach = text.parse()?;
+    }
+    if let Some(text) = rest.get(5) {
+        cache.least = Some(text.parse()?);
+    }
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
 
     let start = Instant::now();
     let scene = cornell::with_blocks();
     let mesh = ElementMesh::of_scene(&scene, &MeshSettings::default())?;
     let light = DirectLight::default();
-    let solution = solve_hierarchy(mesh, &light, &settings, &Control::default(), &mut |_| {})?;
+    let mut solution = solve_hierarchy(mesh, &light, &settings, &Control::default(), &mut |_| {})?;
     let solved = start.elapsed().as_secs_f64();
     println!("{:?}", solution.report);
     let occluders = Occluders::new(&solution.mesh)?;
-    let picture = Picture {
+    regather_reflected(&mut solution, &occluders, 64, &Control::default()).map_err(|_| "cancelled")?;
+    println!("{:.3} s to gather on leaves", start.elapsed().as_secs_f64() - solved);
+    let mut picture = Picture {
         rays: PrimaryRays::new(&cornell::view(), size, size),
         mesh: &solution.mesh,
         occluders: &occluders,
         direct: DirectGather::new(&solution.mesh, &light, &occluders, &GatherSettings::default()),
-        indirect: IndirectField::new(&solution),
+        reflected: ReflectedGather::new(&solution, &occluders, &cache)?,
         size,
     };
+    picture.prepare()?;
+    println!(
+        "{:.3} s to gather at {} places",
+        start.elapsed().as_secs_f64() - solved,
+        picture.reflected.len()
+    );
     let pixels = picture.pixels();
     let seconds = start.elapsed().as_secs_f64();
     println!("{solved:.3} s to solve, {seconds:.3} s in all");

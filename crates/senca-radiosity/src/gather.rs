@@ -4,18 +4,24 @@
 //! and lamps is found anew at each place ([`DirectGather`]): the share of the hemisphere that an
 //! emitter takes up by Lambert's formula, and how much of the emitter is seen by rays. Rays to its
 //! corners and its middle tell whether all of it is seen, or none; only in half-shadows more are sent,
-//! spread over cells of the emitter. The rest of the light is smooth, and is taken from the solution,
-//! between nodes.
+//! spread over cells of the emitter. The rest of the light is smooth: it is taken from the solution,
+//! between nodes ([`IndirectField`]), or more exactly by rays that end on the solution
+//! ([`ReflectedGather`]).
 //!
 //! Source: the second pass of Smits, Arvo and Greenberg 1994, section 5, called local pass or final
 //! gather by others.
 
-use senca_math::LinearRgb;
+mod cache;
+
+use rayon::prelude::*;
 use senca_math::glam::DVec3;
+use senca_math::{Cancelled, Control, LinearRgb};
 use smallvec::SmallVec;
 
 use crate::hierarchy::facet::Facet;
 use crate::{DirectLight, ElementMesh, Extrapolation, Occluders, Solution};
+
+pub use cache::{CacheSettings, ReflectedGather};
 
 /// How light is found at single places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -214,24 +220,70 @@ pub fn gather_reflected(
     rays: u32,
     key: u64,
 ) -> LinearRgb {
-    let mesh = &solution.mesh;
     let frame = Frame::of(normal);
     let shift = [unit_hash(key), unit_hash(!key)];
-    let mut sum = [0.0f64; 3];
-    for ray in 0..rays {
-        let u = (f64::from(ray) + shift[0]) / f64::from(rays);
-        let v = (f64::from(ray) * 0.618_033_988_749_895 + shift[1]).fract();
-        let direction = frame.cosine_weighted(u, v);
-        let Some(hit) = occluders.closest(place, direction).filter(|hit| hit.front) else {
-            continue;
-        };
-        let leaf = leaf_at(mesh, hit.polygon, place + hit.t * direction);
-        let light = mesh.surface(leaf).reflectance * solution.incident[leaf as usize];
-        for (sum, channel) in sum.iter_mut().zip(light.to_array()) {
-            *sum += f64::from(channel);
-        }
+    let light = |ray: u32| {
+        let ring = (f64::from(ray) + shift[0]) / f64::from(rays);
+        let part = (f64::from(ray) * 0.618_033_988_749_895 + shift[1]).fract();
+        reflected_from(solution, occluders, place, frame.cosine_weighted(ring, part)).unwrap_or_default()
+    };
+    let sum = (0..rays).fold(LinearRgb::BLACK, |sum, ray| sum + light(ray));
+    sum * (rays.max(1) as f32).recip()
+}
+
+/// Finds the reflected light on all leaves anew, by rays that end on the solution as it is: one more
+/// exchange of light, in which what is hidden in part is hidden where it is. Links share that out over
+/// whole elements where little light is at stake, which shows where surfaces touch. `rays` are sent
+/// from each leaf, from places all over it; 64 is enough for most.
+///
+/// # Errors
+/// [`Cancelled`]; the solution is as before then.
+pub fn regather_reflected(
+    solution: &mut Solution,
+    occluders: &Occluders,
+    rays: u32,
+    control: &Control<'_>,
+) -> Result<(), Cancelled> {
+    let leaves: Vec<u32> = solution.mesh.leaves().collect();
+    let on_leaf = |&leaf: &u32| {
+        control.check()?;
+        Ok(gather_on_leaf(solution, occluders, leaf, rays))
+    };
+    let found: Result<Vec<LinearRgb>, Cancelled> = leaves.par_iter().with_min_len(16).map(on_leaf).collect();
+    for (&leaf, light) in leaves.iter().zip(found?) {
+        solution.incident[leaf as usize] = solution.direct[leaf as usize] + light;
     }
-    LinearRgb::from_array(sum.map(|channel| (channel / f64::from(rays.max(1))) as f32))
+    solution.pull();
+    Ok(())
+}
+
+/// Mean of the reflected light over a leaf.
+fn gather_on_leaf(solution: &Solution, occluders: &Occluders, leaf: u32, rays: u32) -> LinearRgb {
+    let (shape, normal) = (solution.mesh.shape(leaf), solution.mesh.normal(leaf));
+    let frame = Frame::of(normal);
+    let key = u64::from(leaf) << 32;
+    let light = |ray: u32| {
+        let [a, b] = [mix(key | u64::from(ray)), mix(!(key | u64::from(ray)))];
+        let unit = |bits: u64| f64::from(bits as u32) / 4_294_967_296.0;
+        let ring = (f64::from(ray) + unit(b)) / f64::from(rays);
+        let part = (f64::from(ray) * 0.618_033_988_749_895 + unit_hash(key)).fract();
+        let place = shape.place(unit(a), unit(a >> 32));
+        reflected_from(solution, occluders, place, frame.cosine_weighted(ring, part)).unwrap_or_default()
+    };
+    let sum = (0..rays).fold(LinearRgb::BLACK, |sum, ray| sum + light(ray));
+    sum * (rays.max(1) as f32).recip()
+}
+
+/// Light that the surface which a ray meets reflects; `None` where it meets no front.
+fn reflected_from(
+    solution: &Solution,
+    occluders: &Occluders,
+    place: DVec3,
+    direction: DVec3,
+) -> Option<LinearRgb> {
+    let hit = occluders.closest(place, direction).filter(|hit| hit.front)?;
+    let leaf = leaf_at(&solution.mesh, hit.polygon, place + hit.t * direction);
+    Some(solution.mesh.surface(leaf).reflectance * solution.incident[leaf as usize])
 }
 
 /// Directions around a normal.
@@ -248,12 +300,15 @@ impl Frame {
         Self { axes: [x_axis, normal.cross(x_axis), normal] }
     }
 
+    /// The direction at right angles to the normal at this angle from the first axis.
+    pub(crate) fn around(&self, angle: f64) -> DVec3 {
+        angle.cos() * self.axes[0] + angle.sin() * self.axes[1]
+    }
+
     /// The direction of a point of the unit square, by a map that makes of an even spread one that the
     /// cosine weighs (Malley's).
     pub(crate) fn cosine_weighted(&self, u: f64, v: f64) -> DVec3 {
-        let (radius, angle) = (u.sqrt(), std::f64::consts::TAU * v);
-        let [x, y, z] = self.axes;
-        radius * (angle.cos() * x + angle.sin() * y) + (1.0 - u).max(0.0).sqrt() * z
+        u.sqrt() * self.around(std::f64::consts::TAU * v) + (1.0 - u).max(0.0).sqrt() * self.axes[2]
     }
 }
 
@@ -261,9 +316,15 @@ impl Frame {
 fn leaf_at(mesh: &ElementMesh, polygon: u32, place: DVec3) -> u32 {
     let mut element = polygon;
     loop {
-        let parts = mesh.elements()[element as usize].part_numbers();
-        let inside = |part: u32| inside_by(mesh.shape(part).corners(), mesh.normal(part), place);
-        let Some(best) = parts.max_by(|&a, &b| inside(a).total_cmp(&inside(b))) else {
+        let whole = &mesh.elements()[element as usize];
+        let inside = |&part: &u32| {
+            if whole.corners().len() == 4 {
+                // The nearest middle is the part's own, but for a little where sides are not parallel.
+                return -mesh.elements()[part as usize].center.distance_squared(place);
+            }
+            inside_by(mesh.shape(part).corners(), mesh.normal(part), place)
+        };
+        let Some(best) = whole.part_numbers().max_by(|a, b| inside(a).total_cmp(&inside(b))) else {
             return element;
         };
         element = best;
@@ -359,6 +420,69 @@ mod tests {
                 assert!((weight / sum - expected).abs() < 1e-6, "{weights:?}");
             }
         }
+    }
+
+    /// A room of 2 x 2 x 2 with walls of different light.
+    fn lit_room() -> Solution {
+        let walls = [
+            quad([-1.0; 3], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]),
+            quad([1.0, -1.0, -1.0], [0.0, 0.0, 2.0], [0.0, 2.0, 0.0]),
+            quad([-1.0; 3], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0]),
+            quad([-1.0, 1.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]),
+            quad([-1.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
+            quad([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0]),
+        ];
+        let polygons: Vec<_> = walls.iter().map(|c| (&c[..], LinearRgb::WHITE, LinearRgb::BLACK)).collect();
+        let mesh = ElementMesh::of_polygons(&polygons);
+        let incident: Vec<LinearRgb> =
+            [3.0, 0.5, 1.0, 0.2, 0.7, 0.1].map(|v| LinearRgb::new(v, 1.0, 0.5 * v)).to_vec();
+        Solution { mesh, direct: vec![LinearRgb::BLACK; 6], incident, ..Solution::default() }
+    }
+
+    #[test]
+    fn reflected_light_is_carried_along_its_gradient() {
+        let solution = lit_room();
+        let occluders = Occluders::new(&solution.mesh).expect("few");
+        let settings = CacheSettings { rings: 24, reach: 0.3, least: None };
+        let mut gather = ReflectedGather::new(&solution, &occluders, &settings).expect("in range");
+        let exact = |place: DVec3| {
+            let share = |wall: u32| Facet::of(&solution.mesh, wall).share_at(place, DVec3::Y);
+            (0..6).map(|wall| share(wall) * f64::from(solution.incident[wall as usize].r)).sum::<f64>()
+        };
+        let start = DVec3::new(0.2, -1.0, -0.1);
+        gather.prepare(&[(start, DVec3::Y)], &senca_math::Control::default()).expect("not cancelled");
+        assert_eq!(gather.len(), 1);
+        for way in [DVec3::ZERO, 0.1 * DVec3::X, -0.1 * DVec3::X, 0.1 * DVec3::Z, -0.1 * DVec3::Z] {
+            let [carried, exact] = [f64::from(gather.at(start + way, DVec3::Y).r), exact(start + way)];
+            assert!((carried / exact - 1.0).abs() < 0.015, "{way}: {carried} {exact}");
+        }
+        // All walls are equally bright in the second channel.
+        assert!((gather.at(start, DVec3::Y).g - 1.0).abs() < 1e-6);
+        // A normal that turns towards the bright wall sees more of it.
+        let turned = DVec3::new(-0.05, 1.0, 0.0).normalize();
+        assert!(gather.at(start, turned).r > gather.at(start, DVec3::Y).r);
+    }
+
+    #[test]
+    fn found_light_does_not_depend_on_threads() {
+        let solution = lit_room();
+        let occluders = Occluders::new(&solution.mesh).expect("few");
+        let places: Vec<(DVec3, DVec3)> = (0..900)
+            .map(|i| {
+                (DVec3::new(f64::from(i % 30) / 15.0 - 0.97, -1.0, f64::from(i / 30) / 15.0 - 0.97), DVec3::Y)
+            })
+            .collect();
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| {
+                let settings = CacheSettings { rings: 4, ..CacheSettings::default() };
+                let mut gather = ReflectedGather::new(&solution, &occluders, &settings).expect("in range");
+                gather.prepare(&places, &senca_math::Control::default()).expect("not cancelled");
+                assert!(gather.len() < places.len());
+                places.iter().map(|&(place, normal)| gather.at(place, normal)).collect::<Vec<_>>()
+            })
+        };
+        assert_eq!(with(1), with(3));
     }
 
     #[test]

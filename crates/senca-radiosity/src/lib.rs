@@ -28,7 +28,10 @@ pub mod system;
 pub use bake::{bake_lightmap, bake_vertex_colors};
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
-pub use gather::{DirectGather, GatherSettings, IndirectField, gather_reflected};
+pub use gather::{
+    CacheSettings, DirectGather, GatherSettings, IndirectField, ReflectedGather, gather_reflected,
+    regather_reflected,
+};
 pub use hierarchy::{HierarchySettings, solve_hierarchy};
 pub use lux::{LuxGrid, LuxReport, MOST_LUX_PLACES};
 pub use mesh::{CornerAttributes, Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};

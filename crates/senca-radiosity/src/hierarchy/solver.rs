@@ -281,17 +281,31 @@ impl<'a> Solver<'a> {
     }
 
     /// Light from surfaces at all leaves. Where nothing is lost on the way out, all directions are
-    /// accounted for: there the sum of the form factors is brought to one.
+    /// accounted for: there the sum of the form factors is brought to one, by light as it is on average
+    /// (or as it is here, where that is darker).
     fn arriving(&mut self) -> Vec<Vec4> {
         self.state.gather_moments(&self.mesh, &self.clusters);
         let mut incident = self.network.gather(&self.parts(), &self.state);
+        let mean = self.mean_radiosity();
         for (light, &lost) in incident.iter_mut().zip(&self.state.lost) {
-            let correction = light.w.recip();
-            if lost == 0.0 && correction < MOST_CORRECTION && correction > MOST_CORRECTION.recip() {
-                *light *= correction;
+            if lost == 0.0 && light.w > 0.0 && light.w < MOST_CORRECTION {
+                *light += (1.0 - light.w) * mean.min(*light / light.w);
             }
         }
         incident
+    }
+
+    /// Mean over the area, in which nothing counts for more than twice the mean of all.
+    fn mean_radiosity(&self) -> Vec4 {
+        let polygons = || {
+            (0..self.mesh.polygons().len())
+                .map(|p| (self.state.radiosity[p], self.mesh.elements()[p].area as f32))
+        };
+        let area: f32 = polygons().map(|(_, area)| area).sum();
+        let mean: Vec4 =
+            polygons().map(|(shown, part)| shown * part).sum::<Vec4>() / area.max(f32::MIN_POSITIVE);
+        polygons().map(|(shown, part)| shown.min(2.0 * mean) * part).sum::<Vec4>()
+            / area.max(f32::MIN_POSITIVE)
     }
 
     /// Per channel, what is sent and not lost over what arrives.
