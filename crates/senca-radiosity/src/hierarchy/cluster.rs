@@ -91,6 +91,12 @@ impl Clusters {
         &self.children[range.start as usize..range.end as usize]
     }
 
+    /// All polygons below a cluster.
+    pub(super) fn polygons(&self, cluster: u32) -> &[u32] {
+        let range = &self.clusters[cluster as usize].polygons;
+        &self.order[range.start as usize..range.end as usize]
+    }
+
     /// The cluster that holds a polygon directly.
     pub(super) fn cluster_of(&self, polygon: u32) -> u32 {
         self.cluster_of[polygon as usize]

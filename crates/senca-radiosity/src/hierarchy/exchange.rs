@@ -90,7 +90,7 @@ impl Network {
                     Some(cluster) => {
                         let from = parts.clusters.get(cluster).bounds.center();
                         let (direction, _) = way(from, parts.mesh.elements()[element].center);
-                        state.moments[cluster as usize].towards(direction.as_vec3())
+                        state.sent_by_cluster(cluster, direction, parts)
                     }
                     None => state.radiance(source),
                 };
@@ -159,7 +159,7 @@ fn arrival(receiver: Node, source: Node, weight: f32, parts: &Parts<'_>, state: 
     let reach = distance.max(0.5 * (radius + cluster.radius));
     // The weight is for the middle of the receiver, and holds the visibility.
     let open = f64::from(weight) * PI * reach * reach;
-    let sent = state.sent(source, facet.as_ref(), direction);
+    let sent = state.sent(source, facet.as_ref(), direction, parts);
     let least = (0.5 * radius).powi(2).max(1e-6 * reach * reach) as f32;
     Arrival { from: Some(from.as_vec3()), least, light: sent * (open / PI) as f32 }
 }

@@ -15,6 +15,7 @@ use std::f64::consts::PI;
 
 use senca_math::glam::DVec3;
 
+use super::exchange::Parts;
 use super::facet::Facet;
 use super::link::Link;
 use super::node::Node;
@@ -44,6 +45,10 @@ const STRONG: f64 = 10.0;
 
 /// Where all rays agree, what is still uncertain is this share of a ray.
 const UNSEEN: f64 = 0.25;
+
+/// Where light is blocked in part, so many times more is at stake: a link shares what passes out over
+/// the whole receiver, and many such links behind a wall add up.
+const SHADOW: f64 = 8.0;
 
 /// Where light is blocked in part, the source is divided if it is this many times larger.
 const RELUCTANCE: f64 = 4.0;
@@ -102,7 +107,10 @@ impl Oracle<'_> {
             self.cast(link, rays_for(strength, threshold));
         }
         let [factor, spread, open] = [link.factor, link.spread, link.visibility].map(f64::from);
-        let unsure = uncertainty(open, link.rays);
+        let mut unsure = uncertainty(open, link.rays);
+        if open > 0.0 && open < 1.0 {
+            unsure *= SHADOW;
+        }
         let by_receiver = bright * (spread * open.max(0.1) + factor * unsure);
         let by_source = self.variation(link.source) * factor * open.max(unsure);
         if receiver.area * (by_receiver + by_source) <= threshold {
@@ -113,7 +121,7 @@ impl Oracle<'_> {
         let larger = source.radius > RELUCTANCE * receiver.radius;
         let source_first = by_source > by_receiver || (shadow && larger);
         let verdict = self.split(link, [receiver.area, source.area], source_first);
-        if verdict == Verdict::Keep && unsure > 0.02 && link.rays < RAYS[3] {
+        if verdict == Verdict::Keep && open > 0.0 && open < 1.0 && link.rays < RAYS[3] {
             self.cast(link, RAYS[3]);
         }
         verdict
@@ -134,6 +142,8 @@ impl Oracle<'_> {
 
     /// A cluster and something else.
     fn judge_clusters(&self, link: &mut Link) -> Verdict {
+        let Sight { mesh, clusters, lamps, .. } = self.sight;
+        let parts = Parts { mesh, clusters, lamps };
         let [from, to] = [self.extent(link.source), self.extent(link.receiver)];
         let facets = [self.facet(link.source), self.facet(link.receiver)];
         if link.rays == 0 && self.is_behind(link, &facets) {
@@ -142,7 +152,7 @@ impl Oracle<'_> {
         let (direction, distance) = way(from.center, to.center);
         let reach = distance.max(0.5 * (from.radius + to.radius));
         let near = distance <= NEAR * (from.radius + to.radius);
-        let sent = f64::from(brightness(self.state.sent(link.source, facets[0].as_ref(), direction)));
+        let sent = f64::from(brightness(self.state.sent(link.source, facets[0].as_ref(), direction, &parts)));
         let most = f64::from(brightness(self.state.power(link.source, facets[0].as_ref())));
         let cosine = facets[1].map_or(1.0, |facet| facet.normal.dot(-direction).max(0.0));
         let per_area = 1.0 / (PI * reach * reach);

@@ -52,6 +52,10 @@ pub fn solve_hierarchy(
             solver.show(on_round);
         }
         control.report((round + 1) as f32 / settings.rounds as f32);
+        if !solver.report.converged {
+            // Where light grows without end, links would be divided without end.
+            break;
+        }
     }
     solver.show(on_round);
     Ok(solver.finish())

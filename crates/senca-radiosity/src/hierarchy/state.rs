@@ -4,10 +4,15 @@ use senca_math::LinearRgb;
 use senca_math::glam::{DVec3, Vec4};
 
 use super::cluster::Clusters;
+use super::exchange::Parts;
 use super::facet::Facet;
 use super::moments::Moments;
 use super::node::Node;
 use crate::ElementMesh;
+
+/// Clusters of up to so many polygons send what each of these sends. Moments would let some light out
+/// behind a wall.
+const FEW: usize = 16;
 
 /// Light on all nodes. Values have four channels: red, green, blue, and one that is lit evenly by all
 /// surfaces, so that it counts the share of directions that links account for.
@@ -115,17 +120,36 @@ impl State {
         }
     }
 
-    /// What a node sends from one place to another: radiosity times area times cosine, of lamps and
-    /// elements that of their center. Four channels.
-    pub(super) fn sent(&self, source: Node, facet: Option<&Facet>, direction: DVec3) -> Vec4 {
+    /// What a node sends in a direction: radiosity times area times cosine. Four channels.
+    pub(super) fn sent(
+        &self,
+        source: Node,
+        facet: Option<&Facet>,
+        direction: DVec3,
+        parts: &Parts<'_>,
+    ) -> Vec4 {
         match (source.as_cluster(), facet) {
-            (Some(cluster), _) => self.moments[cluster as usize].towards(direction.as_vec3()),
+            (Some(cluster), _) => self.sent_by_cluster(cluster, direction, parts),
             (None, Some(facet)) => {
                 let cosine = facet.normal.dot(direction).max(0.0);
                 self.radiance(source) * (facet.area * cosine) as f32
             }
             (None, None) => Vec4::ZERO,
         }
+    }
+
+    /// The sum over the polygons where they are few, else by moments.
+    pub(super) fn sent_by_cluster(&self, cluster: u32, direction: DVec3, parts: &Parts<'_>) -> Vec4 {
+        let polygons = parts.clusters.polygons(cluster);
+        if polygons.len() > FEW {
+            return self.moments[cluster as usize].towards(direction.as_vec3());
+        }
+        let by_polygon = |&polygon: &u32| {
+            let cosine = parts.mesh.polygons()[polygon as usize].normal.dot(direction).max(0.0);
+            let area = parts.mesh.elements()[polygon as usize].area;
+            self.radiosity[polygon as usize] * (area * cosine) as f32
+        };
+        polygons.iter().map(by_polygon).sum()
     }
 
     /// What a node sends in all directions.
