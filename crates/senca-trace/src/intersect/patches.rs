@@ -46,7 +46,7 @@ use cells::Cell;
 use divide::BinaryTree;
 use hierarchy::{Hierarchy, Link};
 use net::Net;
-use patch::{Patch, quotient};
+use patch::{Patch, PatchJet};
 use roots::Domain;
 use search::{All, Any, Hit, LocalRay, Nearest, Search, Wanted};
 
@@ -221,26 +221,36 @@ impl PatchSurface {
         append(search.wanted, out);
     }
 
-    /// Unit normal at a place of a patch, also where derivatives vanish; +y where there is none.
-    fn unit_normal(&self, part: u32, uv: DVec2) -> DVec3 {
+    /// Place and derivatives on a patch, in normalized space.
+    fn jet(&self, part: u32, uv: DVec2) -> PatchJet {
         let patch = &self.patches[part as usize];
-        let jet = quotient(&patch.net.at(uv.x, uv.y));
+        dispatch!(self.level, simd => patch.at(simd, uv))
+    }
+
+    /// Unit normal at a place of a patch, also where derivatives vanish; +y where there is none.
+    fn unit_normal(&self, part: u32, uv: DVec2, jet: &PatchJet) -> DVec3 {
         let cross = jet.du.cross(jet.dv);
         let size = jet.du.length_squared().max(jet.dv.length_squared());
         if cross.length_squared() > 1e-12 * size * size {
             return cross.normalize();
         }
-        let limit = match &self.kind {
+        self.limit_normal(part, uv).unwrap_or(DVec3::Y)
+    }
+
+    /// What normals tend to where derivatives vanish.
+    #[cold]
+    fn limit_normal(&self, part: u32, uv: DVec2) -> Option<DVec3> {
+        match &self.kind {
             Kind::Bezier(_) => {
-                let points = std::array::from_fn(|i| patch.net.points()[i].truncate());
+                let net = &self.patches[part as usize].net;
+                let points = std::array::from_fn(|i| net.points()[i].truncate());
                 BicubicPatch::from_list(points).normal(uv.x, uv.y)
             }
             Kind::Nurbs(whole, domains) => {
                 let at = within(&domains[part as usize], uv);
                 whole.normal(at.x, at.y)
             }
-        };
-        limit.unwrap_or(DVec3::Y)
+        }
     }
 
     /// Texture coordinates at a place of a patch, and their growth per u and v.
@@ -291,13 +301,17 @@ fn alternate(hits: &mut [Hit]) {
     let mut before = 1.0;
     for i in 1..hits.len() {
         let (a, b) = (hits[i - 1], hits[i]);
-        if b.distance - a.distance < 1e-12 && a.sign == before && b.sign != before {
+        if b.distance - a.distance < TURNED && a.sign == before && b.sign != before {
             hits.swap(i - 1, i);
             (hits[i - 1].crossing.t, hits[i].crossing.t) = (a.crossing.t, b.crossing.t);
         }
         before = hits[i - 1].sign;
     }
 }
+
+/// Distance, in normalized space, within which rounding may turn round the order of hits on an edge, of
+/// which one side is seen nearly edge on.
+const TURNED: f64 = 1e-10;
 
 /// Distance, in normalized space, and difference of parameters, within which hits of the same direction
 /// on a border are one.
@@ -347,8 +361,8 @@ impl Intersect for PatchSurface {
 
     fn surface_point(&self, _: &Ray, crossing: &Crossing) -> SurfacePoint {
         let Crossing { part, uv, .. } = *crossing;
-        let jet = quotient(&self.patches[part as usize].net.at(uv.x, uv.y));
-        let normal = self.unit_normal(part, uv);
+        let jet = self.jet(part, uv);
+        let normal = self.unit_normal(part, uv, &jet);
         let (texcoord, growth) = self.texture(part, uv);
         let surface = match &self.kind {
             Kind::Bezier(surfaces) => surfaces[part as usize],

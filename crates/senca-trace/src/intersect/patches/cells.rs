@@ -224,6 +224,11 @@ impl Cell {
         }
     }
 
+    /// Along the normal at the centre; zero without a frame.
+    pub(super) fn normal(&self) -> Vec3 {
+        self.local_from_object.row(2)
+    }
+
     /// Its rectangle.
     pub(super) fn domain(&self) -> Domain {
         let [u, v, du, dv] = self.uv.map(f64::from);

@@ -32,10 +32,16 @@ impl LocalRay {
         if !ray.is_valid() {
             return None;
         }
-        let largest = ray.direction.abs().max_element();
-        let scaled = ray.direction / largest;
-        let direction = scaled.normalize();
-        let per_distance = scale / largest / scaled.length();
+        let length = ray.direction.length();
+        // Squares of very long and very short directions are lost.
+        let (direction, per_distance) = if (1e-100..1e100).contains(&length) {
+            let inverse = length.recip();
+            (ray.direction * inverse, scale * inverse)
+        } else {
+            let largest = ray.direction.abs().max_element();
+            let scaled = ray.direction / largest;
+            (scaled.normalize(), scale / largest / scaled.length())
+        };
         let from = (ray.origin - center) / scale;
         let middle = -from.dot(direction);
         let origin = from + middle * direction;
@@ -179,14 +185,28 @@ impl<W: Wanted> Search<'_, W> {
     #[cold]
     #[inline(never)]
     fn divide(&mut self, cell: &Cell) {
-        self.by_division(cell.patch, cell.domain());
+        self.divide_along(cell.patch, cell.domain(), cell.normal().as_dvec3());
     }
 
     /// The roots in a part of a patch, by dividing it.
     pub(super) fn by_division(&mut self, part: u32, domain: Domain) {
+        self.divide_along(part, domain, DVec3::ZERO);
+    }
+
+    /// As [`Search::by_division`]. One of the two planes in which the ray lies is the one that is most
+    /// square to `normal`: a ray that runs over a bent piece without touching it has all of it on one side.
+    fn divide_along(&mut self, part: u32, domain: Domain, normal: DVec3) {
         let patch = &self.surface.patches[part as usize];
         let (o, d) = (self.local.origin, self.local.direction);
-        let (x, y) = d.any_orthonormal_pair();
+        let across = normal - normal.dot(d) * d;
+        // What is left of the normal has to be large, so that it is square to the ray to all digits.
+        let is_along_surface = across.length_squared() > 0.25 * normal.length_squared();
+        let (x, y) = if is_along_surface {
+            let y = across.normalize();
+            (y.cross(d), y)
+        } else {
+            d.any_orthonormal_pair()
+        };
         let pair = patch.net.map(|p| {
             let offset = p.truncate() - o * p.w;
             DVec2::new(x.dot(offset), y.dot(offset))
@@ -195,11 +215,11 @@ impl<W: Wanted> Search<'_, W> {
         let mut found = RootList::new();
         roots(pair, domain, &|uv| patch.is_regular(uv), &mut found);
         for mut root in found {
+            let jet = super::patch::quotient(&patch.net.at(root.uv.x, root.uv.y));
             if root.sign == 0.0 {
-                root.sign = self.surface.unit_normal(part, root.uv).dot(d).signum();
+                root.sign = self.surface.unit_normal(part, root.uv, &jet).dot(d).signum();
             }
-            let place = super::patch::quotient(&patch.net.at(root.uv.x, root.uv.y)).value;
-            self.take(part, root, (place - o).dot(d));
+            self.take(part, root, (jet.value - o).dot(d));
         }
     }
 }
@@ -215,11 +235,15 @@ enum Newton {
     Lost,
 }
 
+/// Steps, in half sizes of the cell, after which Newton's method has settled: the next would be the square
+/// of it.
+const SETTLED: f64 = 1e-7;
+
 /// Newton's method for `origin + s direction = S(u, v)` from a place in the frame of a cell.
 #[inline(always)]
 fn newton<S: Simd>(simd: S, patch: &Patch, cell: &Cell, start: DVec2, ray: &LocalRay) -> Newton {
-    let [cu, cv, hu, hv] = cell.uv.map(f64::from);
-    let (center, half) = (DVec2::new(cu, cv), DVec2::new(hu, hv));
+    let domain = cell.domain();
+    let (center, half) = (domain.center(), domain.half());
     let mut uv = center + half * start;
     for _ in 0..10 {
         let jet = patch.at(simd, uv);
@@ -229,15 +253,10 @@ fn newton<S: Simd>(simd: S, patch: &Patch, cell: &Cell, start: DVec2, ray: &Loca
         let moment = ray.direction.cross(offset);
         let step = DVec2::new(jet.dv.dot(moment), -jet.du.dot(moment)) * inverse;
         uv += step;
-        if step.x.abs() < 1e-7 * hu && step.y.abs() < 1e-7 * hv {
+        if step.abs().cmple(SETTLED * half).all() {
+            let error = || DVec2::new(jet.dv.length(), jet.du.length()) * inverse.abs();
             let distance = -offset.dot(normal) * inverse;
-            return settle(
-                cell,
-                uv,
-                DVec2::new(jet.dv.length(), jet.du.length()) * inverse.abs(),
-                distance,
-                inverse.signum(),
-            );
+            return settle(cell, uv, error, distance, inverse.signum());
         }
         if !((uv - center).abs().cmple(4.0 * half).all()) {
             break;
@@ -248,11 +267,17 @@ fn newton<S: Simd>(simd: S, patch: &Patch, cell: &Cell, start: DVec2, ray: &Loca
 
 /// Whether a root lies in the cell; `error` is that of (u, v) per error of the place.
 #[inline(always)]
-fn settle(cell: &Cell, uv: DVec2, error: DVec2, distance: f64, sign: f64) -> Newton {
-    let tolerance = (5.0 * ROUNDING * error + 1e-13).min(DVec2::splat(1e-6));
+fn settle(cell: &Cell, uv: DVec2, error: impl Fn() -> DVec2, distance: f64, sign: f64) -> Newton {
     let domain = cell.domain();
-    if !domain.holds(uv, tolerance) {
-        return if domain.holds(uv, MARGIN * domain.half()) { Newton::Outside } else { Newton::Lost };
+    if !domain.holds(uv, DVec2::splat(-WIDEST)) {
+        let tolerance = (5.0 * ROUNDING * error() + 1e-13).min(DVec2::splat(WIDEST));
+        if !domain.holds(uv, tolerance) {
+            let is_near = domain.holds(uv, MARGIN * domain.half());
+            return if is_near { Newton::Outside } else { Newton::Lost };
+        }
     }
     Newton::Inside { root: Root { uv: uv.clamp(DVec2::ZERO, DVec2::ONE), sign }, distance }
 }
+
+/// Most that a root may lie outside of a cell and count as in it.
+const WIDEST: f64 = 1e-6;

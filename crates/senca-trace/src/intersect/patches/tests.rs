@@ -417,3 +417,60 @@ fn more_patches_than_memory_can_bear_are_refused() {
     let error = super::at_most("patches", (1 << 20) + 1).expect_err("too many");
     assert!(error.to_string().contains("too many"), "{error}");
 }
+
+/// Where, from `inside` on to `outside`, rays along `direction` begin to miss.
+fn silhouette(surface: &PatchSurface, direction: DVec3, inside: DVec3, outside: DVec3) -> DVec3 {
+    let met =
+        |p: DVec3| surface.occludes(&Ray::new(p - 9.0 * direction, direction), &mut Counters::default());
+    assert!(met(inside) && !met(outside), "{inside} {outside}");
+    let (mut inside, mut outside) = (inside, outside);
+    for _ in 0..50 {
+        let middle = 0.5 * (inside + outside);
+        *(if met(middle) { &mut inside } else { &mut outside }) = middle;
+    }
+    inside
+}
+
+/// The teapot is some six units wide. Magnified a thousand times a picture is 0.006 wide; its outline there
+/// is one smooth curve, whose bend is the same along all of the picture, to within a tenth of a pixel.
+#[test]
+fn the_silhouette_of_the_teapot_is_smooth_at_any_zoom() {
+    let teapot = surface(&teapot());
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    // Along the rays, along the outline, a place within and one without: body, lid, its knob, spout, handle.
+    let places = [
+        (x, z, DVec3::new(0.0, 1.0, 1.1), DVec3::new(0.0, 2.5, 1.1)),
+        (x, z, DVec3::new(0.0, -1.0, 1.7), DVec3::new(0.0, -2.5, 1.7)),
+        (x, y, DVec3::new(0.0, 0.7, 2.0), DVec3::new(0.0, 0.7, 3.5)),
+        (x, z, DVec3::new(0.0, 0.0, 3.0), DVec3::new(0.0, 1.0, 3.0)),
+        (y, x, DVec3::new(2.4, 0.0, 1.5), DVec3::new(2.4, 0.0, 3.0)),
+        (y, x, DVec3::new(-2.4, 0.0, 2.1), DVec3::new(-2.4, 0.0, 3.0)),
+    ];
+    const STEPS: u32 = 32;
+    for (direction, along, inside, outside) in places {
+        let out = (outside - inside).normalize();
+        for zoom in [1.0, 10.0, 100.0] {
+            let step = 0.006 / zoom / f64::from(STEPS);
+            let offset = |i: u32| {
+                let shift = (f64::from(i) - 0.5 * f64::from(STEPS)) * step * along;
+                let edge = silhouette(&teapot, direction, inside + shift, outside + shift);
+                let ray = Ray::new(edge - 9.0 * direction - 1e-9 * out, direction);
+                let hit = closest(&teapot, &ray).unwrap();
+                let facing = teapot.surface_point(&ray, &hit).normal.dot(direction);
+                assert!(facing.abs() < 1e-3, "the surface is seen edge on: {facing} at {edge}");
+                (edge - inside).dot(out)
+            };
+            let outline: Vec<f64> = (0..=STEPS).map(offset).collect();
+            // A parabola through the ends and the middle, against all places.
+            let (a, b, c) = (outline[0], outline[STEPS as usize / 2], outline[STEPS as usize]);
+            let pixel = 0.006 / zoom / 640.0;
+            for (i, place) in outline.iter().enumerate() {
+                let t = 2.0 * i as f64 / f64::from(STEPS) - 1.0;
+                let smooth = b + 0.5 * (c - a) * t + 0.5 * (a - 2.0 * b + c) * t * t;
+                assert!((place - smooth).abs() < 0.1 * pixel, "{inside} {zoom} {i}: {}", place - smooth);
+            }
+            let bend = (a - 2.0 * b + c).abs();
+            assert!(zoom > 1.0 || bend > 0.01 * pixel, "it is a curve: {bend} at {inside}");
+        }
+    }
+}
