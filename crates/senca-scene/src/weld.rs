@@ -16,7 +16,7 @@ impl Mesh {
     /// Makes points one that are no farther apart than `tolerance`, in object units; 0 means equal
     /// coordinates. A point joins the first earlier point that is near enough and that moves alike
     /// under morph targets and joints; points with NaN stay alone. Vertices that then agree in
-    /// everything become one too. Faces stay, even those that collapse. Returns the number of points
+    /// everything, and belong to one surface, become one too. Faces stay, even those that collapse. Returns the number of points
     /// that went.
     ///
     /// Negative and NaN tolerances count as 0.
@@ -127,9 +127,27 @@ impl Mesh {
         self.vertices.point.iter().enumerate().map(leader).collect()
     }
 
-    /// Makes vertices one that agree in place and all attributes.
+    /// The surface of every vertex: that of the first face that has it. Empty where there is but one.
+    fn surface_of_vertices(&self) -> Vec<u32> {
+        if self.surfaces.len() < 2 {
+            return Vec::new();
+        }
+        let mut surfaces = vec![NONE; self.vertices.point.len()];
+        for (face, corners) in self.faces.iter().enumerate() {
+            for &vertex in corners {
+                let known = &mut surfaces[vertex as usize];
+                if *known == NONE {
+                    *known = self.faces.surface_of(face);
+                }
+            }
+        }
+        surfaces
+    }
+
+    /// Makes vertices one that agree in place, surface and all attributes.
     fn join_equal_vertices(&mut self) {
         let v = &self.vertices;
+        let surfaces = self.surface_of_vertices();
         let bits = |x: f32| u64::from((x + 0.0).to_bits());
         let hash = |i: usize| {
             let normal = v.normal.get(i).map_or(0, |n| n.to_array().into_iter().map(bits).fold(0, mix));
@@ -138,6 +156,7 @@ impl Mesh {
         };
         let alike = |a: usize, b: usize| {
             v.point[a] == v.point[b]
+                && surfaces.get(a) == surfaces.get(b)
                 && v.normal.get(a) == v.normal.get(b)
                 && v.texcoord0.get(a) == v.texcoord0.get(b)
                 && v.texcoord1.get(a) == v.texcoord1.get(b)
@@ -148,7 +167,7 @@ impl Mesh {
                     .iter()
                     .all(|t| t.normals.get(a) == t.normals.get(b) && t.tangents.get(a) == t.tangents.get(b))
         };
-        let leaders = if self.vertices_are_bare() {
+        let leaders = if self.vertices_are_bare() && surfaces.is_empty() {
             self.first_at_point()
         } else {
             first_of_equals(v.point.len(), hash, alike)

@@ -33,9 +33,9 @@ pub(super) fn build(name: &str, mut soup: Soup, files: &dyn Files) -> Result<Sce
     for mut part in split(soup) {
         let material_of =
             |key: &SurfaceKey| key.material.as_ref().and_then(|name| materials.get(name).copied());
-        join_doubled_points(&mut part.mesh);
         let named = part.keys.iter().zip(part.surface_names);
         part.mesh.surfaces = named.map(|(key, name)| surface(name, key, material_of(key))).collect();
+        join_doubled_points(&mut part.mesh);
         let name = if part.name.is_empty() { scene.name.clone() } else { part.name };
         let shape = Shape::Mesh(part.mesh);
         let geometry = scene.add_geometry(Geometry { name: name.clone(), shape, material: None });
