@@ -146,7 +146,8 @@ pub(super) fn draw(
 pub(super) fn warning(report: &Report) -> Option<String> {
     let light = report.radiosity.filter(|light| !light.converged)?;
     Some(format!(
-        "the light has not settled: after {} rounds the last change was {:.1e} of the brightest",
-        light.iterations, light.residual
+        "the light is not as exact as asked for: after {} rounds it changed by {:.1e} of the brightest, and {:.1e} of the \
+         power is not accounted for",
+        light.iterations, light.residual, light.energy_error
     ))
 }
