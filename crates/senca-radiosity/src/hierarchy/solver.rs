@@ -22,6 +22,9 @@ const SMALLEST_EDGE: f64 = 1.0 / 400.0;
 /// Most that a sum of form factors is corrected by.
 const MOST_CORRECTION: f32 = 2.0;
 
+/// Share of the tolerance below which a change is none.
+const STILL: f64 = 1e-3;
+
 /// Links that are judged between two looks at whether the caller wants to stop.
 const AT_ONCE: usize = 1 << 14;
 
@@ -52,7 +55,7 @@ pub fn solve_hierarchy(
             solver.show(on_round);
         }
         control.report((round + 1) as f32 / settings.rounds as f32);
-        if !solver.report.converged {
+        if !solver.settled {
             // Where light grows without end, links would be divided without end.
             break;
         }
@@ -80,6 +83,8 @@ struct Solver<'a> {
     smallest_area: f64,
     /// What light from surfaces was brought to its power by.
     scale: Vec4,
+    /// Whether light does not change any more.
+    settled: bool,
     report: SolveReport,
 }
 
@@ -112,6 +117,7 @@ impl<'a> Solver<'a> {
             smallest_area: edge * edge,
             power: 0.0,
             scale: Vec4::ONE,
+            settled: false,
             point_lit: Vec::new(),
             network: Network::default(),
             report: SolveReport::default(),
@@ -260,7 +266,7 @@ impl<'a> Solver<'a> {
 
     /// Light goes to and fro until little changes.
     fn exchange(&mut self, tolerance: f64) {
-        self.report.converged = false;
+        (self.report.converged, self.settled) = (false, false);
         for _ in 0..self.settings.max_iterations {
             if self.control.is_cancelled() {
                 return;
@@ -276,9 +282,13 @@ impl<'a> Solver<'a> {
                 self.state.radiosity = before;
                 return;
             }
-            // The brightest may be far brighter than what it lights, so power has to agree too.
-            if self.report.residual <= tolerance && self.energy_error() <= tolerance {
-                self.report.converged = true;
+            // The brightest may be far brighter than what it lights, so power has to agree too. Links that
+            // are coarse yet may keep it from that however long light goes to and fro.
+            if self.report.residual <= tolerance {
+                self.report.converged = self.energy_error() <= tolerance;
+                self.settled = self.report.converged || self.report.residual <= STILL * tolerance;
+            }
+            if self.settled {
                 return;
             }
         }
@@ -366,6 +376,8 @@ impl<'a> Solver<'a> {
         self.state.radiosity = (0..self.mesh.elements().len() as u32).map(emission).collect();
         let direct = self.arriving();
         self.state.radiosity = lit;
+        // The next round judges links by all that clusters send.
+        self.state.gather_moments(&self.mesh, &self.clusters);
         let lamps = self.state.lamp_light.iter();
         direct.iter().zip(lamps).map(|(&light, &lamps)| rgb(light * self.scale + lamps)).collect()
     }

@@ -185,7 +185,13 @@ fn lamps_light_as_emitters_of_their_shape_do() {
         let [a, b] = [&by_lamp, &by_emitter].map(|s| s.direct[wall].g);
         assert!((a / b - 1.0).abs() < 0.02, "{wall}: {a} {b}");
     }
-    assert!(by_lamp.report.energy_error < 1e-3);
+    // What the walls send on has to be divided as finely for lamps as for emitters; the emitter's black
+    // square takes some of it away, and hides the ceiling.
+    for wall in [0, 1, 2, 4, 5] {
+        let [a, b] = [&by_lamp, &by_emitter].map(|s| s.incident[wall].g - s.direct[wall].g);
+        assert!((a / b - 1.0).abs() < 0.1, "{wall}: {a} {b}");
+    }
+    assert!(by_lamp.report.converged && by_lamp.report.energy_error < 1e-3, "{:?}", by_lamp.report);
 }
 
 #[test]
