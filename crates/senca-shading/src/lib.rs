@@ -37,5 +37,5 @@ pub use phong::{
     PhongConstants, cos_incidence, cos_reflection, phong, phong_term, reflected, thesis_linear_attenuation,
     thesis_physical_attenuation,
 };
-pub use rig::{LightRig, ShadingPoint};
+pub use rig::{LightRig, ShadingPoint, ambient_without_lights};
 pub use spot::{box_light_contains, box_light_frame, cone_cosine, cone_sharp, cone_smooth, spot_share};

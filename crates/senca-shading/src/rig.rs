@@ -31,7 +31,7 @@ impl LightRig {
     /// for its background and no ambient light of its own gets the environment's mean colour as that.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
-        let mut rig = Self { ambient: ambient(scene), lights: Vec::new() };
+        let mut rig = Self { ambient: ambient_without_lights(scene), lights: Vec::new() };
         for (node, world_from_node) in scene.nodes.iter().zip(scene.world_from_nodes()) {
             let (Some(id), Some(world_from_light)) = (node.light, world_from_node) else { continue };
             let Some(light) = scene.lights.get(id.index()) else { continue };
@@ -54,8 +54,10 @@ impl LightRig {
     }
 }
 
-/// Ambient light of a scene without its lights.
-fn ambient(scene: &Scene) -> LinearRgb {
+/// Ambient light of a scene without its lights: its own, or the mean colour of the environment where it
+/// has none of its own.
+#[must_use]
+pub fn ambient_without_lights(scene: &Scene) -> LinearRgb {
     if scene.ambient != LinearRgb::BLACK {
         return scene.ambient;
     }

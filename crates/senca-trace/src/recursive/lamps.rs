@@ -3,7 +3,7 @@
 use senca_math::LinearRgb;
 use senca_math::glam::{DMat4, DVec3};
 use senca_scene::{LightKind, Scene};
-use senca_shading::{Lamp, ShadingLight};
+use senca_shading::{Lamp, ShadingLight, ambient_without_lights};
 
 use crate::Sampler;
 
@@ -41,7 +41,7 @@ pub(crate) enum ToLight {
 
 /// The lights that the nodes of `scene` place, in the order of nodes, and all ambient light.
 pub(crate) fn lights_of(scene: &Scene) -> (Vec<TracedLight>, LinearRgb) {
-    let mut ambient = scene.ambient;
+    let mut ambient = ambient_without_lights(scene);
     let mut lights = Vec::new();
     for (node, world_from_node) in scene.nodes.iter().zip(scene.world_from_nodes()) {
         let (Some(id), Some(world_from_light)) = (node.light, world_from_node) else { continue };
@@ -138,7 +138,10 @@ fn area_place(world_from_square: &DMat4, index: u32, n: u32, mut sampler: Sample
 mod tests {
     use super::*;
     use crate::Pattern;
-    use senca_scene::{Attenuation, Light, LightId, Node, NodeId};
+    use senca_scene::{
+        Attenuation, Background, ImageData, ImageId, Light, LightId, Node, NodeId, TextureImage,
+    };
+    use senca_shading::LightRig;
 
     fn sampler() -> Sampler {
         Sampler::new(Pattern::Sobol, 0, 0, 0, 0)
@@ -151,6 +154,17 @@ mod tests {
         let scene =
             Scene { lights: vec![light], nodes: vec![node], roots: vec![NodeId(0)], ..Scene::default() };
         lights_of(&scene).0.remove(0)
+    }
+
+    #[test]
+    fn surroundings_light_as_they_do_in_the_pipeline() {
+        let data = ImageData::RgbaF32 { width: 1, height: 1, texels: vec![[0.5, 0.25, 0.125, 1.0]] };
+        let images = vec![TextureImage { name: String::new(), data }];
+        let background = Background::Environment { image: ImageId(0), strength: 1.0, rotation: 0.0 };
+        let scene = Scene { images, background, ..Scene::default() };
+        let ambient = lights_of(&scene).1;
+        assert!((ambient.r - 0.5).abs() < 1e-6, "{ambient:?}");
+        assert_eq!(ambient, LightRig::of_scene(&scene).ambient);
     }
 
     #[test]
