@@ -2,7 +2,6 @@
 //!
 //! This crate is the front door: it names the rooms of the house and joins them. The rooms are
 //! crates of their own, reachable as modules here: [`math`], [`scene`], [`io`], [`shading`],
-//! [`raster`], [`pipeline`], [`mod@trace`] and [`light`] (radiosity).
 //! [`raster`], [`pipeline`], [`mod@trace`] and [`radiosity`].
 //!
 //! [`render`] draws a scene in one call; [`io::load`] reads one from a file of any format:
