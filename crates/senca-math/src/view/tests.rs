@@ -280,6 +280,18 @@ fn the_1991_sample_view_gives_the_worked_matrix() {
     assert_inverse(&steps);
 }
 
+/// The program's own matrix began with the identity, so its last element was one too large; that is why
+/// the clip matrix here is the formula's.
+#[test]
+fn the_1991_listing_weakens_the_perspective_by_one_element() {
+    let mut t = sample_1991().steps().unwrap().product();
+    t.w_axis.w += 1.0;
+    assert_maps(&t, [5.5, 6.0, 0.0], [0.875, 0.875, 0.0], 1e-12);
+    assert_maps(&t, [0.0, 0.0, 54.0], [-2.625 / 2.6, -3.5 / 2.6, -0.9 / 2.6], 1e-12);
+    assert_maps(&t, [0.0, 0.0, 54.0], [-1.009_615, -1.346_154, -0.346_154], 1e-6);
+    assert_maps(&t, [0.0, 0.0, 30.0], [-0.525, -0.7, -0.1], 1e-12);
+}
+
 #[test]
 fn a_1991_view_with_the_back_plane_in_front_still_sees_the_right_way() {
     let view = sample_1991().view().unwrap();
