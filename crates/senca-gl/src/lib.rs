@@ -1,0 +1,68 @@
+//! OpenGL 1.x as a safe state machine.
+//!
+//! A [`Context`] is an OpenGL of its own, without globals: commands are its methods, state is asked for
+//! with its questions, and the picture is in its window's buffers. It draws with the tiled rasterizer of
+//! `senca-raster`, on all threads.
+//!
+//! ```
+//! use senca_gl::{Config, Context, gl};
+//!
+//! let mut c = Context::new(Config::default());
+//! assert!(c.resize(8, 8));
+//! c.clear(gl::COLOR_BUFFER_BIT);
+//! c.color([1.0, 0.0, 0.0]);
+//! c.rect([-1, -1], [0, 1]);
+//! c.finish();
+//! assert_eq!(c.window_pixels()[0], [255, 0, 0, 255]);
+//! assert_eq!(c.window_pixels()[7], [0, 0, 0, 0]);
+//! ```
+//!
+//! Vertices are transformed, lit and put together as they come, and gathered until something that matters
+//! for drawing changes or somebody looks. So many small objects with matrices and materials of their own
+//! are drawn as one.
+//!
+//! Source of all rules: Segal, Akeley: The OpenGL Graphics System, version 1.5 (2003), and the
+//! specifications of the extensions.
+
+#![expect(dead_code, reason = "state that commands of pixels and textures read is here before they are")]
+
+mod arrays;
+mod assemble;
+mod attrib;
+mod commands;
+mod component;
+mod context;
+mod debug;
+mod error;
+mod eval;
+mod framebuffer;
+#[path = "tokens.rs"]
+pub mod gl;
+mod immediate;
+mod lighting;
+mod list;
+mod matrix;
+pub mod pixel;
+mod pixel_state;
+mod query;
+mod raster;
+mod raster_pos;
+mod raster_state;
+mod select;
+mod state;
+mod texture;
+mod vertex;
+
+/// A name of the specification, one of [`gl`]; or bits of a mask.
+pub type Enum = u32;
+
+pub use arrays::{ArraySource, ClientMemory};
+pub use component::Component;
+pub use context::{Config, Context};
+pub use debug::{DebugCallback, DebugMessage};
+pub use error::Error;
+pub use eval::map_components;
+pub use list::list_name_bytes;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,201 @@
+//! What waits to be drawn, with the state it is drawn with.
+//!
+//! Primitives are gathered until something that matters for drawing changes or somebody looks at the buffers.
+//! State that is baked into vertices - matrices, lights, colours - does not matter any more at this point.
+
+use crate::state::{
+    Cap, ColorBuffer, DepthBuffer, Enabled, Fog, Line, Multisample, Point, Polygon, PolygonStipple,
+    StencilBuffer, TEXTURE_UNITS, TexEnv, TexTarget, Viewport,
+};
+use crate::texture::View;
+use crate::vertex::{Layout, Processed};
+use crate::{Context, Enum, gl};
+use senca_math::glam::Vec4;
+
+/// Largest size of a point, in pixels.
+pub(crate) const MAX_POINT_SIZE: f32 = 2048.0;
+/// Largest width of a line, in pixels.
+pub(crate) const MAX_LINE_WIDTH: f32 = 2048.0;
+/// Vertices after which a batch is drawn in any case.
+const FULL: usize = 1 << 18;
+
+/// What the primitives of a batch are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Kind {
+    #[default]
+    Triangles,
+    Lines,
+    Points,
+    /// Edges of polygons in mode LINE.
+    PolygonLines,
+    /// Corners of polygons in mode POINT.
+    PolygonPoints,
+}
+
+/// A texture unit that is on, with a texture that is complete.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct UnitState {
+    pub(crate) unit: usize,
+    pub(crate) env: TexEnv,
+    pub(crate) target: TexTarget,
+    pub(crate) view: View,
+}
+
+/// Everything drawing depends on, but for the buffers drawn to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct RasterState {
+    /// Only the capabilities that matter here.
+    pub(crate) enabled: Enabled,
+    pub(crate) polygon: Polygon,
+    pub(crate) polygon_stipple: PolygonStipple,
+    pub(crate) line: Line,
+    pub(crate) point: Point,
+    pub(crate) fog: Fog,
+    pub(crate) depth: DepthBuffer,
+    pub(crate) stencil: StencilBuffer,
+    pub(crate) color: ColorBuffer,
+    pub(crate) viewport: Viewport,
+    pub(crate) scissor: [i32; 4],
+    pub(crate) multisample: Multisample,
+    pub(crate) clip_origin: Enum,
+    /// By unit number, rising.
+    pub(crate) units: Vec<UnitState>,
+    /// Secondary colours are added.
+    pub(crate) color_sum: bool,
+    /// Samples that pass are counted.
+    pub(crate) counts: bool,
+}
+
+impl RasterState {
+    fn new(context: &Context) -> Self {
+        let s = &context.state;
+        let lit = s.enabled.has(Cap::Lighting);
+        let units = (0..TEXTURE_UNITS).filter_map(|unit| {
+            let (target, view) = context.texture_view(unit)?;
+            Some(UnitState { unit, env: s.texturing.units[unit].env, target, view })
+        });
+        Self {
+            enabled: Enabled(s.enabled.0 & relevant()),
+            polygon: s.polygon,
+            polygon_stipple: s.polygon_stipple,
+            line: s.line,
+            point: s.point,
+            fog: s.fog,
+            depth: DepthBuffer { clear: 0.0, ..s.depth },
+            stencil: StencilBuffer { clear: 0, ..s.stencil },
+            color: ColorBuffer { clear_color: [0.0; 4], clear_index: 0.0, ..s.color },
+            viewport: s.viewport,
+            scissor: s.scissor,
+            multisample: s.multisample,
+            clip_origin: s.transform.clip_origin,
+            units: units.collect(),
+            color_sum: if lit {
+                s.lighting.color_control == gl::SEPARATE_SPECULAR_COLOR
+            } else {
+                s.enabled.has(Cap::ColorSum)
+            },
+            counts: context.queries.active(),
+        }
+    }
+
+    pub(crate) fn has(&self, cap: Cap) -> bool {
+        self.enabled.has(cap)
+    }
+}
+
+/// Capabilities that matter for drawing.
+fn relevant() -> u128 {
+    [
+        Cap::AlphaTest,
+        Cap::Blend,
+        Cap::ColorLogicOp,
+        Cap::CullFace,
+        Cap::DepthTest,
+        Cap::Dither,
+        Cap::Fog,
+        Cap::FramebufferSrgb,
+        Cap::LineSmooth,
+        Cap::LineStipple,
+        Cap::Multisample,
+        Cap::PointSmooth,
+        Cap::PolygonOffsetFill,
+        Cap::PolygonOffsetLine,
+        Cap::PolygonOffsetPoint,
+        Cap::PolygonSmooth,
+        Cap::PolygonStipple,
+        Cap::SampleAlphaToCoverage,
+        Cap::SampleAlphaToOne,
+        Cap::SampleCoverage,
+        Cap::ScissorTest,
+        Cap::StencilTest,
+        Cap::TextureCubeMapSeamless,
+    ]
+    .into_iter()
+    .fold(0, |bits, cap| bits | 1 << cap as u8)
+}
+
+/// Primitives that wait to be drawn.
+#[derive(Debug, Default)]
+pub(crate) struct Batch {
+    pub(crate) kind: Kind,
+    pub(crate) layout: Layout,
+    pub(crate) state: RasterState,
+    /// Clip space of the rasterizer: y down, z in [0, w].
+    pub(crate) positions: Vec<Vec4>,
+    /// [`Layout::stride`] for each vertex.
+    pub(crate) varyings: Vec<f32>,
+    /// Three vertex numbers per triangle, two per line, one per point.
+    pub(crate) indices: Vec<u32>,
+    /// Per line, whether its stipple goes on from the line before.
+    pub(crate) continues: Vec<bool>,
+    /// Per vertex, sizes of points that depend on the distance; else empty.
+    pub(crate) sizes: Vec<f32>,
+}
+
+impl Batch {
+    pub(crate) fn extend(&mut self, p: &Processed) {
+        self.positions.extend_from_slice(&p.positions);
+        self.varyings.extend_from_slice(&p.varyings);
+        self.sizes.extend_from_slice(&p.sizes);
+    }
+
+    fn clear(&mut self) {
+        self.positions.clear();
+        self.varyings.clear();
+        self.indices.clear();
+        self.continues.clear();
+        self.sizes.clear();
+    }
+}
+
+impl Context {
+    /// Makes sure that primitives of a kind can be put into the batch; returns the number of the next vertex.
+    pub(crate) fn begin_batch(&mut self, kind: Kind, layout: Layout) -> u32 {
+        if self.raster_changed {
+            self.raster_changed = false;
+            let state = RasterState::new(self);
+            if state != self.batch.state {
+                self.flush_batch();
+                self.batch.state = state;
+            }
+        }
+        if self.batch.kind != kind || self.batch.layout != layout || self.batch.positions.len() >= FULL {
+            self.flush_batch();
+            (self.batch.kind, self.batch.layout) = (kind, layout);
+        }
+        self.batch.positions.len() as u32
+    }
+
+    /// Draws what waits.
+    pub(crate) fn flush_batch(&mut self) {
+        if self.batch.indices.is_empty() {
+            self.batch.clear();
+            return;
+        }
+        let mut batch = std::mem::take(&mut self.batch);
+        let passed = self.draw_batch(&batch);
+        self.queries.add(passed);
+        batch.clear();
+        self.batch = batch;
+    }
+}
