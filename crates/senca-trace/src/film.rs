@@ -10,7 +10,7 @@ mod saved;
 #[cfg(test)]
 mod tests;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -84,15 +84,28 @@ impl Area {
         starts(self.height).flat_map(|y| starts(self.width).map(move |x| tile(x, y))).collect()
     }
 
-    /// Columns and rows of its pixels, row by row.
-    fn places(self) -> impl Iterator<Item = (u32, u32)> {
-        (self.y..self.y + self.height).flat_map(move |y| (self.x..self.x + self.width).map(move |x| (x, y)))
+    /// Columns and rows of the pixels of a tile, so that those that follow each other are near each other
+    /// both ways: square by square (Morton 1966).
+    fn places_in_squares(self) -> impl Iterator<Item = (u32, u32)> {
+        let side = self.width.max(self.height).next_power_of_two();
+        let inside = move |&(x, y): &(u32, u32)| x < self.width && y < self.height;
+        let places = (0..side * side).map(|i| (every_second_bit(i), every_second_bit(i >> 1)));
+        places.filter(inside).map(move |(x, y)| (self.x + x, self.y + y))
     }
 
     /// Number of a pixel of this area.
     fn index(&self, x: u32, y: u32) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
+}
+
+/// The number that bits 0, 2, 4, ... make.
+fn every_second_bit(i: u32) -> u32 {
+    let i = i & 0x5555_5555;
+    let i = (i | (i >> 1)) & 0x3333_3333;
+    let i = (i | (i >> 2)) & 0x0f0f_0f0f;
+    let i = (i | (i >> 4)) & 0x00ff_00ff;
+    (i | (i >> 8)) & 0xffff
 }
 
 /// What a film is made for.
@@ -299,7 +312,8 @@ impl Film {
                 exposures.extend_from_slice(&sums[area.index(tile.x, y)..][..tile.width as usize]);
             }
             batch.clear();
-            for (pixel, (x, y)) in tile.places().enumerate() {
+            for (x, y) in tile.places_in_squares() {
+                let pixel = tile.index(x, y);
                 for sample in range.clone() {
                     let mut sampler = Sampler::new(Pattern::Sobol, seed, x, y, sample);
                     let (within, weight) = places.place(sample, &mut sampler);
@@ -457,17 +471,26 @@ fn in_tiles<I: Integrator, T: Send>(
     progress: &Progress<'_>,
     work: impl Fn(&mut Bench<I>, &Area) -> Option<T> + Sync,
 ) -> Result<Vec<T>, TraceError> {
+    // Benches are big: what allocates one for each tile waits for fresh memory more than it traces.
+    let benches: Mutex<Vec<Bench<I>>> = Mutex::default();
     let done = Mutex::new(0usize);
     let results: Option<Vec<T>> = tiles
         .par_iter()
         .with_max_len(1)
-        .map_init(Bench::<I>::default, |state, tile| {
-            let result = work(state, tile)?;
-            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+        .map(|tile| {
+            let free = locked(&benches).pop();
+            let mut bench = free.unwrap_or_default();
+            let result = work(&mut bench, tile)?;
+            locked(&benches).push(bench);
+            let mut done = locked(&done);
             *done += 1;
             progress.report(*done as f32 / tiles.len() as f32);
             Some(result)
         })
         .collect();
     results.ok_or(TraceError::Cancelled)
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

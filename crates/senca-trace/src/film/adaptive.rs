@@ -51,14 +51,15 @@ impl Film {
             if progress.control.is_cancelled() {
                 return None;
             }
-            let places: Vec<_> = tile.places().map(|(x, y)| self.place([x, y], [0, 0], 1)).collect();
+            let places: Vec<_> =
+                tile.places_in_squares().map(|(x, y)| self.place([x, y], [0, 0], 1)).collect();
             let mut colors = Vec::with_capacity(places.len());
             integrator.sample_many(&places, work, &mut colors);
             Some((colors, I::counts(work).since(&before)))
         })?;
         let mut corners = vec![[0.0; 4]; grid.pixels()];
         for (tile, (colors, counts)) in tiles.iter().zip(done) {
-            for ((x, y), color) in tile.places().zip(colors) {
+            for ((x, y), color) in tile.places_in_squares().zip(colors) {
                 corners[grid.index(x, y)] = color;
             }
             report.counts += counts;
@@ -94,7 +95,7 @@ impl Film {
         let done = in_tiles::<I, _>(&tiles, progress, |Bench { work, caches, .. }, tile| {
             let before = I::counts(work);
             let mut exposures = Vec::with_capacity(tile.pixels());
-            let pixels: Vec<[u32; 2]> = tile.places().map(|(x, y)| [x, y]).collect();
+            let pixels: Vec<[u32; 2]> = tile.places_in_squares().map(|(x, y)| [x, y]).collect();
             for pixels in pixels.chunks((CACHED / (cells + 1).pow(2)).max(1) as usize) {
                 caches.resize(pixels.len().max(caches.len()), SquareCache::default());
                 for (&[x, y], cache) in pixels.iter().zip(&mut *caches) {
@@ -112,7 +113,7 @@ impl Film {
             Some((exposures, I::counts(work).since(&before)))
         })?;
         for (tile, (exposures, counts)) in tiles.iter().zip(done) {
-            for ((x, y), exposure) in tile.places().zip(exposures) {
+            for ((x, y), exposure) in tile.places_in_squares().zip(exposures) {
                 report.samples += u64::from(exposure.count - 4);
                 self.sums[area.index(x, y)] = exposure;
             }
