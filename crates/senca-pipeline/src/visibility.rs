@@ -176,7 +176,7 @@ impl<'a, 'w> Pass<'a, 'w> {
 }
 
 /// An empty band: nothing anywhere, infinitely far.
-pub(crate) const EMPTY: Clear = Clear { color: None, depth: Some(DEPTH_FAR), id: Some(NO_ID) };
+pub(crate) const EMPTY: Clear = Clear { color: None, depth: Some(DEPTH_FAR), id: Some(NO_ID), stencil: None };
 
 impl Drawer {
     /// Draws `group` into `target` with `shading`.

@@ -1,5 +1,6 @@
 //! What goes into a rasterizer and what comes out: primitives, state, shading, counters.
 
+use crate::stage::FragmentStage;
 use crate::target::{Clear, Target};
 use crate::texture::{Sampler, Texture};
 use senca_math::glam::Vec4;
@@ -265,6 +266,9 @@ pub enum Shading<'a> {
     },
     /// Code of the caller's, once per batch of up to [`LANES`] fragments.
     Custom(&'a dyn FragmentShader),
+    /// Code of the caller's that does all that happens to fragments and pixels. [`State::blend`] is not
+    /// heeded, and [`State::depth_test`] only if the stage does not test depth.
+    Stage(&'a dyn FragmentStage),
 }
 
 impl Shading<'_> {
@@ -339,6 +343,8 @@ pub struct Fragments<'a> {
     pub id: u32,
     /// Whether the primitive shows its front. True of lines and points.
     pub front: bool,
+    /// Share of each pixel the primitive covers, where primitives are antialiased.
+    pub coverage: Option<&'a [f32; LANES]>,
 }
 
 impl Fragments<'_> {

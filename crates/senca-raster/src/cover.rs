@@ -12,9 +12,9 @@ use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, S
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
-use crate::target::Clear;
+use crate::stage::{FragmentStage, PixelColors, Pixels, StageNeeds};
 use crate::textured::{TextureQueue, Waiting};
-use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer};
+use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer, Touches};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// What a draw's kernel needs to know, the same for all its triangles.
@@ -23,13 +23,19 @@ pub(crate) struct Pass<'a> {
     pub(crate) state: &'a State,
     pub(crate) setup: SetupState,
     pub(crate) shading: &'a Shading<'a>,
-    pub(crate) clear: Option<Clear>,
+    pub(crate) touches: Touches,
     pub(crate) format: ColorFormat,
+    /// The caller's code for all that happens to fragments, and what it asks for.
+    pub(crate) stage: Option<&'a dyn FragmentStage>,
+    pub(crate) needs: StageNeeds,
+    /// Depth is tested here.
     pub(crate) has_depth: bool,
     pub(crate) has_ids: bool,
     pub(crate) writes_depth: bool,
     /// The depth test passes nothing that is farther than what is there.
     pub(crate) hides_farther: bool,
+    /// Farther and nearer are exchanged.
+    pub(crate) reversed: bool,
     /// Blocks the triangle has covered hold nothing farther than it afterwards.
     pub(crate) lowers_farthest: bool,
     /// Depths of fragments are wanted.
@@ -58,7 +64,7 @@ pub(crate) enum ColorPath {
 impl ColorPath {
     pub(crate) fn of(shading: &Shading<'_>, format: ColorFormat) -> Self {
         match (shading, format) {
-            (Shading::Custom(_), _) => Self::Plain,
+            (Shading::Custom(_) | Shading::Stage(_), _) => Self::Plain,
             (Shading::None, _) | (_, ColorFormat::None) => Self::None,
             (Shading::Fixed { color, .. }, _) => match *color {
                 ColorSource::Constant(rgba) => Self::Constant(rgba),
@@ -264,10 +270,16 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             whole = least >= 0 && !self.partial;
         }
         if self.buffer.present >> block & 1 == 0 {
-            self.buffer.fetch(self.band, self.tile[0] as usize, block, self.pass.clear.as_ref());
+            self.buffer.fetch(self.band, self.tile[0] as usize, block, &self.pass.touches);
         }
         if self.pass.hides_farther {
-            let nearest = if test { self.block_depth(lane, bx, by)[0] } else { self.batch.z_min[lane] };
+            let nearest = if test {
+                self.block_depth(lane, bx, by)[0]
+            } else if self.pass.reversed {
+                -self.batch.z_max[lane]
+            } else {
+                self.batch.z_min[lane]
+            };
             if nearest > self.buffer.farthest[block] {
                 return [false, false];
             }
@@ -275,8 +287,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         [true, whole]
     }
 
-    /// Least and greatest depth of the triangle's plane over a block, clamped to the triangle's.
-    /// Rounding keeps order, so both are found at corners, exactly.
+    /// Nearest and farthest depth of the triangle's plane over a block, clamped to the triangle's;
+    /// negated where the depth test is reversed. Rounding keeps order, so both are found at corners,
+    /// exactly.
     #[inline(always)]
     fn block_depth(&self, lane: usize, bx: i32, by: i32) -> [f32; 2] {
         let b = &*self.batch;
@@ -285,7 +298,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let corners = [p.at(fx, fy), p.at(fx + 7.0, fy), p.at(fx, fy + 7.0), p.at(fx + 7.0, fy + 7.0)];
         let low = corners[0].min(corners[1]).min(corners[2]).min(corners[3]);
         let high = corners[0].max(corners[1]).max(corners[2]).max(corners[3]);
-        [low.max(b.z_min[lane]).min(b.z_max[lane]), high.max(b.z_min[lane]).min(b.z_max[lane])]
+        let low = low.max(b.z_min[lane]).min(b.z_max[lane]);
+        let high = high.max(b.z_min[lane]).min(b.z_max[lane]);
+        if self.pass.reversed { [-high, -low] } else { [low, high] }
     }
 
     /// After blocks have been covered wholly: nothing in them is farther than the triangle any more.
@@ -367,8 +382,18 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         if bits == 0 {
             return;
         }
-        self.counts.passed += u64::from(bits.count_ones());
-        let keep = self.color(simd, place, row, fx, z, pass, bits);
+        let keep = if self.pass.stage.is_some() {
+            self.counts.shaded += u64::from(bits.count_ones());
+            let passed = self.staged(simd, place, row, fx, z, bits);
+            self.counts.passed += u64::from(passed.count_ones());
+            if passed == 0 {
+                return;
+            }
+            mask32x16::from_bitmask(simd, u64::from(passed))
+        } else {
+            self.counts.passed += u64::from(bits.count_ones());
+            self.color(simd, place, row, fx, z, pass, bits)
+        };
         if self.pass.writes_depth {
             let plane = &mut self.buffer.depth[block][pair];
             let stored = f32x16::load_array_ref(simd, plane);
@@ -446,6 +471,80 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         At { fx, fy, weights: [of[0] * w, of[1] * w, w], affine: false }
     }
 
+    /// Hands the lanes of `mask` to the stage; returns those that passed.
+    #[inline(always)]
+    fn staged<S: Simd>(
+        &mut self,
+        simd: S,
+        place: Place,
+        row: &Row<S>,
+        fx: f32x16<S>,
+        z: f32x16<S>,
+        mask: u16,
+    ) -> u16 {
+        let Some(stage) = self.pass.stage else { return 0 };
+        let (mut values, mut count) = ([[0.0; LANES]; MAX_VARYINGS], 0);
+        if self.pass.needs.shades {
+            count = self.pass.slots.len().min(MAX_VARYINGS);
+            let at = self.at(simd, place.lane, fx, row.fy);
+            for (slot, value) in values.iter_mut().enumerate().take(count) {
+                varying(simd, &self.batch.varyings[slot], place.lane, &at).store_array(value);
+            }
+        }
+        let mut fragments = self.fragments(place, mask, z.to_array(), &values[..count]);
+        let mut shaded = Shaded::default();
+        if self.pass.needs.shades {
+            stage.shade(&fragments, &mut shaded);
+        }
+        fragments.mask &= shaded.keep;
+        if fragments.mask == 0 {
+            return 0;
+        }
+        stage.merge(&fragments, &shaded, &mut self.pixels(place)) & fragments.mask
+    }
+
+    /// The pixels of a vector, for the stage.
+    #[inline(always)]
+    fn pixels(&mut self, Place { block, pair, .. }: Place) -> Pixels<'_> {
+        let (pass, buffer) = (self.pass, &mut *self.buffer);
+        let [r, g, b, a] = &mut buffer.rgba;
+        Pixels {
+            color: match pass.format {
+                ColorFormat::Rgba8 if pass.needs.color => PixelColors::Rgba8(&mut buffer.rgba8[block][pair]),
+                ColorFormat::Rgba32F if pass.needs.color => PixelColors::Rgba32F([
+                    &mut r[block][pair],
+                    &mut g[block][pair],
+                    &mut b[block][pair],
+                    &mut a[block][pair],
+                ]),
+                _ => PixelColors::None,
+            },
+            depth: self.band.depth.is_some().then_some(&mut buffer.depth[block][pair]),
+            stencil: (self.band.stencil.is_some() && pass.needs.stencil)
+                .then_some(&mut buffer.stencil[block][pair]),
+        }
+    }
+
+    #[inline(always)]
+    fn fragments<'v>(
+        &self,
+        place: Place,
+        mask: u16,
+        depth: [f32; LANES],
+        varyings: &'v [[f32; LANES]],
+    ) -> Fragments<'v> {
+        Fragments {
+            x: (self.tile[0] as usize + place.block % BLOCKS * 8) as u32,
+            y: (self.tile[1] as usize + place.block / BLOCKS * 8 + place.pair * 2) as u32,
+            mask,
+            depth,
+            varyings,
+            id: self.batch.ids[place.lane],
+            front: self.batch.swapped >> place.lane & 1 == 1,
+            coverage: None,
+        }
+    }
+
     /// Colours by the caller's code.
     #[inline(always)]
     fn custom<S: Simd>(
@@ -463,15 +562,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
         let mut shaded = Shaded::default();
         let Shading::Custom(shader) = self.pass.shading else { return shaded };
-        let fragments = Fragments {
-            x: (self.tile[0] as usize + place.block % BLOCKS * 8) as u32,
-            y: (self.tile[1] as usize + place.block / BLOCKS * 8 + place.pair * 2) as u32,
-            mask,
-            depth,
-            varyings: &values[..count],
-            id: self.batch.ids[place.lane],
-            front: self.batch.swapped >> place.lane & 1 == 1,
-        };
+        let fragments = self.fragments(place, mask, depth, &values[..count]);
         shader.shade(&fragments, &mut shaded);
         shaded
     }

@@ -1,7 +1,7 @@
 //! Tiled and scan-line rasterizers.
 //!
 //! [`Primitives`] in clip space, a [`State`] and a [`Shading`] go into a [`Rasterizer`], which fills a
-//! [`Target`] of colour, depth and identifiers, in any combination: the same code draws pictures,
+//! [`Target`] of colour, depth, stencil and identifiers, in any combination: the same code draws pictures,
 //! shadow maps, and the identifiers that picking and the hemicube of radiosity read.
 //!
 //! There are two rasterizers. [`ScanlineRasterizer`] is the form of the books, to be read in one
@@ -40,8 +40,7 @@
 //! # Ok::<(), senca_raster::TargetError>(())
 //! ```
 //!
-//! What is not here yet: stencil, multisampling, antialiased lines. Lines and points are drawn one
-//! fragment after another on one thread.
+//! Lines and points are drawn one fragment after another.
 
 mod api;
 mod assemble;
@@ -56,6 +55,7 @@ mod sample;
 pub mod scanline;
 mod setup;
 mod shade;
+mod stage;
 mod target;
 mod texture;
 mod textured;
@@ -69,7 +69,10 @@ pub use api::{
 };
 pub use fearless_simd::{self as simd, Level as SimdLevel};
 pub use scanline::ScanlineRasterizer;
-pub use target::{Buffers, Clear, ColorPlane, MAX_TARGET_SIDE, Target, TargetError, rgba8_from_rgba};
+pub use stage::{FragmentStage, PixelColors, Pixels};
+pub use target::{
+    Buffers, Clear, ClearMasks, ColorPlane, MAX_TARGET_SIDE, Target, TargetError, rgba8_from_rgba,
+};
 pub use texture::{
     Filter, MAX_TEXTURE_SIDE, Mip, Sampler, TexelGrid, Texels, Texture, TextureError, TextureLevel, Wrap,
 };

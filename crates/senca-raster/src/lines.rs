@@ -16,6 +16,7 @@ use crate::assemble::{TriangleVaryings, varyings_of, vertex_count};
 use crate::clip::{VIEW_VOLUME, clip_line, wholly_outside};
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, Setup, SetupState, ceil_div};
 use crate::shade::shade_plain;
+use crate::stage::{FragmentStage, run_stage, stage_of};
 use crate::target::Target;
 use rayon::prelude::*;
 use senca_math::glam::Vec4;
@@ -360,8 +361,13 @@ impl<'a, 't> Sink<'a, 't> {
         let (x, y) = (x as i32, y as i32);
         let row = y - self.first_row;
         self.counters.tested += 1;
-        if !crate::pixel::depth_passes(self.target, self.state, x, row, depth) {
+        let stage = stage_of(self.shading);
+        let tests_here = stage.is_none_or(|stage| !stage.tests_depth());
+        if tests_here && !crate::pixel::depth_passes(self.target, self.state, x, row, depth) {
             return;
+        }
+        if let Some(stage) = stage {
+            return self.staged(stage, x, y, depth);
         }
         self.counters.passed += 1;
         let Some(rgba) = self.shade(x, y, depth) else { return };
@@ -369,10 +375,24 @@ impl<'a, 't> Sink<'a, 't> {
         crate::pixel::write(self.target, self.state, x, row, depth, self.id, rgba);
     }
 
-    /// Colour of the pixel; `None` when it is discarded.
-    fn shade(&mut self, x: i32, y: i32, depth: f32) -> Option<[f32; 4]> {
-        let lane = ((y & 1) * 8 + (x & 7)) as usize;
+    /// Hands the fragment to the stage.
+    fn staged(&mut self, stage: &dyn FragmentStage, x: i32, y: i32, depth: f32) {
         let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
+        let (fragments, _) = self.fragments(&mut varyings, x, y, depth);
+        let passed = run_stage(stage, self.target, self.first_row, self.state, &fragments);
+        self.counters.shaded += 1;
+        self.counters.passed += u64::from(passed.count_ones());
+    }
+
+    /// A batch of one fragment, and its lane.
+    fn fragments<'v>(
+        &self,
+        varyings: &'v mut [[f32; LANES]; MAX_VARYINGS],
+        x: i32,
+        y: i32,
+        depth: f32,
+    ) -> (Fragments<'v>, usize) {
+        let lane = ((y & 1) * 8 + (x & 7)) as usize;
         for (plane, terms) in varyings.iter_mut().zip(&self.values.terms).take(self.values.count) {
             *plane = [terms[0]; LANES];
         }
@@ -384,7 +404,15 @@ impl<'a, 't> Sink<'a, 't> {
             varyings: &varyings[..self.values.count],
             id: self.id,
             front: true,
+            coverage: None,
         };
+        (fragments, lane)
+    }
+
+    /// Colour of the pixel; `None` when it is discarded.
+    fn shade(&mut self, x: i32, y: i32, depth: f32) -> Option<[f32; 4]> {
+        let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
+        let (fragments, lane) = self.fragments(&mut varyings, x, y, depth);
         let mut shaded = Shaded::default();
         shade_plain(self.shading, &self.setup, &self.values, [0.0; 2], &fragments, &mut shaded);
         self.counters.shaded += u64::from(!matches!(self.shading, Shading::None));

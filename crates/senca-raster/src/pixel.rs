@@ -85,7 +85,7 @@ pub(crate) fn clear_in_scissor(target: &mut Target<'_>, state: &State) {
     }
 }
 
-fn clear_range(target: &mut Target<'_>, range: std::ops::Range<usize>, clear: &Clear) {
+pub(crate) fn clear_range(target: &mut Target<'_>, range: std::ops::Range<usize>, clear: &Clear) {
     if let (Some(plane), Some(rgba)) = (&mut target.color, clear.color) {
         match plane {
             ColorPlane::Rgba32F(p) => p[range.clone()].fill(rgba),
@@ -94,6 +94,9 @@ fn clear_range(target: &mut Target<'_>, range: std::ops::Range<usize>, clear: &C
     }
     if let (Some(plane), Some(depth)) = (&mut target.depth, clear.depth) {
         plane[range.clone()].fill(depth);
+    }
+    if let (Some(plane), Some(stencil)) = (&mut target.stencil, clear.stencil) {
+        plane[range.clone()].fill(stencil);
     }
     if let (Some(plane), Some(id)) = (&mut target.ids, clear.id) {
         plane[range].fill(id);

@@ -17,6 +17,7 @@ use crate::api::{Counters, Fragments, LANES, MAX_VARYINGS, Primitives, Rasterize
 use crate::assemble::{TriangleVaryings, for_each_triangle};
 use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, Setup, ceil_div};
 use crate::shade::{interpolate, shade_plain};
+use crate::stage::{run_stage, stage_of};
 use crate::target::Target;
 
 /// Draws triangle after triangle, row after row, on one thread. The oracle of
@@ -35,8 +36,10 @@ impl Rasterizer for ScanlineRasterizer {
         crate::pixel::clear_in_scissor(target, state);
         let map = ScreenMap::new(target.width, target.height, state);
         let mut counters = Counters::default();
+        let untested = stage_of(shading).is_some_and(|stage| stage.tests_depth());
         for_each_triangle(triangles, &map, state, &mut counters, |setup, varyings, id, counters| {
-            let mut row = RowFiller { target, state, shading, map: &map, setup, varyings, id, counters };
+            let mut row =
+                RowFiller { target, state, shading, map: &map, setup, varyings, id, untested, counters };
             for_each_span(&setup.v, &map, |y, columns| row.fill(y, columns));
         });
         counters
@@ -123,6 +126,8 @@ struct RowFiller<'a, 't> {
     setup: &'a Setup,
     varyings: &'a TriangleVaryings,
     id: u32,
+    /// Depth is tested by the stage.
+    untested: bool,
     counters: &'a mut Counters,
 }
 
@@ -151,36 +156,56 @@ impl RowFiller<'_, '_> {
             let [fx, fy] = self.offset(x, y);
             let depth = self.setup.depth(fx, fy);
             self.counters.tested += 1;
-            if crate::pixel::depth_passes(self.target, self.state, x, y, depth) {
+            if self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth) {
                 let lane = first_lane + (x & 7) as usize;
                 batch.mask |= 1 << lane;
                 batch.depth[lane] = depth;
             }
         }
-        self.counters.passed += u64::from(batch.mask.count_ones());
-        if batch.mask != 0 {
-            self.write(&batch);
+        if batch.mask == 0 {
+            return;
         }
+        match stage_of(self.shading) {
+            Some(stage) => {
+                self.with_fragments(&batch, |row, fragments, _| {
+                    row.counters.shaded += u64::from(batch.mask.count_ones());
+                    let passed = run_stage(stage, row.target, 0, row.state, fragments);
+                    row.counters.passed += u64::from(passed.count_ones());
+                });
+            }
+            None => {
+                self.counters.passed += u64::from(batch.mask.count_ones());
+                self.write(&batch);
+            }
+        }
+    }
+
+    /// Calls `with` with the fragments of a batch, and where its lane 0 is.
+    fn with_fragments(&mut self, batch: &Batch, with: impl FnOnce(&mut Self, &Fragments<'_>, [f32; 2])) {
+        let mut values = [[0.0; LANES]; MAX_VARYINGS];
+        let values = &mut values[..self.varyings.count];
+        let at = self.offset(batch.x, batch.y);
+        interpolate(self.setup, self.varyings, at, values);
+        let fragments = Fragments {
+            x: batch.x as u32,
+            y: batch.y as u32,
+            mask: batch.mask,
+            depth: batch.depth,
+            varyings: values,
+            id: self.id,
+            front: self.setup.swapped,
+            coverage: None,
+        };
+        with(self, &fragments, at);
     }
 
     fn write(&mut self, batch: &Batch) {
         let mut shaded = Shaded::default();
         let colors = self.target.color.is_some() && !matches!(self.shading, Shading::None);
         if colors || matches!(self.shading, Shading::Custom(_)) {
-            let mut values = [[0.0; LANES]; MAX_VARYINGS];
-            let values = &mut values[..self.varyings.count];
-            let at = self.offset(batch.x, batch.y);
-            interpolate(self.setup, self.varyings, at, values);
-            let fragments = Fragments {
-                x: batch.x as u32,
-                y: batch.y as u32,
-                mask: batch.mask,
-                depth: batch.depth,
-                varyings: values,
-                id: self.id,
-                front: self.setup.swapped,
-            };
-            shade_plain(self.shading, self.setup, self.varyings, at, &fragments, &mut shaded);
+            self.with_fragments(batch, |row, fragments, at| {
+                shade_plain(row.shading, row.setup, row.varyings, at, fragments, &mut shaded);
+            });
             self.counters.shaded += u64::from(batch.mask.count_ones());
         }
         let mask = batch.mask & shaded.keep;

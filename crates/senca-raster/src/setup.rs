@@ -40,7 +40,7 @@ impl Bounds {
         Self { x0: self.x0.max(o.x0), y0: self.y0.max(o.y0), x1: self.x1.min(o.x1), y1: self.y1.min(o.y1) }
     }
 
-    fn of_rect(r: Rect) -> Self {
+    pub(crate) fn of_rect(r: Rect) -> Self {
         let end = |start: i32, len: u32| (i64::from(start) + i64::from(len)).min(i64::from(i32::MAX)) as i32;
         Self { x0: r.x, y0: r.y, x1: end(r.x, r.width), y1: end(r.y, r.height) }
     }

@@ -53,7 +53,7 @@ pub(crate) fn shade_plain(
     out: &mut Shaded,
 ) {
     match shading {
-        Shading::None => {}
+        Shading::None | Shading::Stage(_) => {}
         Shading::Custom(shader) => shader.shade(fragments, out),
         Shading::Fixed { color, texture } => {
             for lane in fragments.lanes() {

@@ -1,7 +1,10 @@
-//! What is drawn into: views of colour, depth and identifier planes, and an owner of all three.
+//! What is drawn into: views of colour, depth, stencil and identifier planes, and an owner of them.
 
+use crate::api::Rect;
+use crate::setup::Bounds;
 use senca_math::Image;
 use senca_math::conventions::{DEPTH_FAR, NO_ID};
+use std::ops::Range;
 
 /// Largest width or height of a target, in pixels. Leaves a rim inside the fixed-point range of
 /// +-2^15 pixels about the middle.
@@ -47,15 +50,32 @@ impl ColorPlane<'_> {
             Self::Rgba8(plane) => plane.chunks_mut(pixels).map(ColorPlane::Rgba8).collect(),
         }
     }
+
+    /// Fills some components of a range of pixels.
+    fn fill_components(&mut self, range: Range<usize>, rgba: [f32; 4], components: [bool; 4]) {
+        match self {
+            Self::Rgba32F(plane) => fill_some(&mut plane[range], rgba, components),
+            Self::Rgba8(plane) => fill_some(&mut plane[range], rgba8_from_rgba(rgba), components),
+        }
+    }
 }
 
-/// What a draw writes to: any combination of colour, depth and identifiers, of one size.
+fn fill_some<T: Copy>(pixels: &mut [[T; 4]], rgba: [T; 4], components: [bool; 4]) {
+    for pixel in pixels {
+        for k in (0..4).filter(|&k| components[k]) {
+            pixel[k] = rgba[k];
+        }
+    }
+}
+
+/// What a draw writes to: any combination of colour, depth, stencil and identifiers, of one size.
 #[derive(Debug)]
 pub struct Target<'a> {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) color: Option<ColorPlane<'a>>,
     pub(crate) depth: Option<&'a mut [f32]>,
+    pub(crate) stencil: Option<&'a mut [u8]>,
     pub(crate) ids: Option<&'a mut [u32]>,
 }
 
@@ -68,11 +88,13 @@ pub struct Clear {
     pub depth: Option<f32>,
     /// Identifier; `None` leaves the plane. Default: [`NO_ID`].
     pub id: Option<u32>,
+    /// Stencil value; `None` leaves the plane. Default: 0.
+    pub stencil: Option<u8>,
 }
 
 impl Default for Clear {
     fn default() -> Self {
-        Self { color: Some([0.0; 4]), depth: Some(DEPTH_FAR), id: Some(NO_ID) }
+        Self { color: Some([0.0; 4]), depth: Some(DEPTH_FAR), id: Some(NO_ID), stencil: Some(0) }
     }
 }
 
@@ -85,7 +107,7 @@ impl<'a> Target<'a> {
         if width.max(height) > MAX_TARGET_SIDE {
             return Err(TargetError::TooLarge { width, height });
         }
-        Ok(Self { width, height, color: None, depth: None, ids: None })
+        Ok(Self { width, height, color: None, depth: None, stencil: None, ids: None })
     }
 
     /// A target that draws into a picture.
@@ -119,6 +141,16 @@ impl<'a> Target<'a> {
         Ok(self)
     }
 
+    /// With a stencil plane, which [`crate::FragmentStage`]s read and write.
+    ///
+    /// # Errors
+    /// [`TargetError::PlaneSize`].
+    pub fn with_stencil(mut self, stencil: &'a mut [u8]) -> Result<Self, TargetError> {
+        self.check(stencil.len())?;
+        self.stencil = Some(stencil);
+        Ok(self)
+    }
+
     /// With an identifier plane.
     ///
     /// # Errors
@@ -135,12 +167,14 @@ impl<'a> Target<'a> {
         let pixels = (rows * width as usize).max(1);
         let mut color = self.color.as_mut().map(|plane| plane.strips(pixels).into_iter());
         let mut depth = self.depth.as_mut().map(|plane| plane.chunks_mut(pixels));
+        let mut stencil = self.stencil.as_mut().map(|plane| plane.chunks_mut(pixels));
         let mut ids = self.ids.as_mut().map(|plane| plane.chunks_mut(pixels));
         let strip = |i: usize| Target {
             width,
             height: rows.min(height - i * rows) as u32,
             color: color.as_mut().and_then(Iterator::next),
             depth: depth.as_mut().and_then(Iterator::next),
+            stencil: stencil.as_mut().and_then(Iterator::next),
             ids: ids.as_mut().and_then(Iterator::next),
         };
         (0..height.div_ceil(rows)).map(strip).collect()
@@ -174,9 +208,51 @@ impl<'a> Target<'a> {
         if let (Some(plane), Some(depth)) = (&mut self.depth, clear.depth) {
             plane.fill(depth);
         }
+        if let (Some(plane), Some(stencil)) = (&mut self.stencil, clear.stencil) {
+            plane.fill(stencil);
+        }
         if let (Some(plane), Some(id)) = (&mut self.ids, clear.id) {
             plane.fill(id);
         }
+    }
+
+    /// Fills the planes inside a rectangle: of colours the components in `masks.color`, of stencil
+    /// values the bits in `masks.stencil`.
+    pub fn clear_masked(&mut self, clear: &Clear, area: Rect, masks: &ClearMasks) {
+        let whole = Bounds { x0: 0, y0: 0, x1: self.width as i32, y1: self.height as i32 };
+        let b = whole.intersect(Bounds::of_rect(area));
+        if b.is_empty() {
+            return;
+        }
+        let partial = masks.color != [true; 4];
+        for y in b.y0..b.y1 {
+            let first = y as usize * self.width as usize;
+            let row = first + b.x0 as usize..first + b.x1 as usize;
+            if let (Some(plane), Some(rgba)) = (&mut self.color, clear.color.filter(|_| partial)) {
+                plane.fill_components(row.clone(), rgba, masks.color);
+            }
+            if let (Some(plane), Some(value)) = (&mut self.stencil, clear.stencil) {
+                let keep = !masks.stencil;
+                plane[row.clone()].iter_mut().for_each(|v| *v = *v & keep | value & masks.stencil);
+            }
+            let color = clear.color.filter(|_| !partial);
+            crate::pixel::clear_range(self, row, &Clear { color, stencil: None, ..*clear });
+        }
+    }
+}
+
+/// Which components [`Target::clear_masked`] writes. Default: all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClearMasks {
+    /// Red, green, blue, alpha.
+    pub color: [bool; 4],
+    /// Bits of stencil values.
+    pub stencil: u8,
+}
+
+impl Default for ClearMasks {
+    fn default() -> Self {
+        Self { color: [true; 4], stencil: u8::MAX }
     }
 }
 
@@ -199,6 +275,8 @@ pub struct Buffers {
     pub depth: Vec<f32>,
     /// Identifiers, row 0 on top; may be empty.
     pub ids: Vec<u32>,
+    /// Stencil values, row 0 on top; may be empty.
+    pub stencil: Vec<u8>,
 }
 
 impl Buffers {
@@ -206,7 +284,19 @@ impl Buffers {
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
-        Self { color: Image::new(width, height, [0.0; 4]), depth: vec![DEPTH_FAR; pixels], ids: Vec::new() }
+        Self {
+            color: Image::new(width, height, [0.0; 4]),
+            depth: vec![DEPTH_FAR; pixels],
+            ids: Vec::new(),
+            stencil: Vec::new(),
+        }
+    }
+
+    /// As [`Buffers::new`], with stencil values, all 0.
+    #[must_use]
+    pub fn with_stencil(width: u32, height: u32) -> Self {
+        let stencil = vec![0; width as usize * height as usize];
+        Self { stencil, ..Self::new(width, height) }
     }
 
     /// As [`Buffers::new`], with identifiers, all [`NO_ID`].
@@ -221,7 +311,10 @@ impl Buffers {
     /// # Errors
     /// Those of [`Target`]; a plane may have been resized by hand.
     pub fn target(&mut self) -> Result<Target<'_>, TargetError> {
-        let target = Target::of_image(&mut self.color)?.with_depth(&mut self.depth)?;
+        let mut target = Target::of_image(&mut self.color)?.with_depth(&mut self.depth)?;
+        if !self.stencil.is_empty() {
+            target = target.with_stencil(&mut self.stencil)?;
+        }
         if self.ids.is_empty() { Ok(target) } else { target.with_ids(&mut self.ids) }
     }
 }

@@ -29,6 +29,7 @@ pub(crate) struct Band<'a> {
     pub(crate) height: usize,
     pub(crate) color: Option<ColorPlane<'a>>,
     pub(crate) depth: Option<&'a mut [f32]>,
+    pub(crate) stencil: Option<&'a mut [u8]>,
     pub(crate) ids: Option<&'a mut [u32]>,
 }
 
@@ -42,6 +43,7 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
         None => Vec::new(),
     };
     let mut depths = target.depth.as_deref_mut().map(|p| p.chunks_mut(step));
+    let mut stencils = target.stencil.as_deref_mut().map(|p| p.chunks_mut(step));
     let mut ids = target.ids.as_deref_mut().map(|p| p.chunks_mut(step));
     (0..height.div_ceil(TILE))
         .map(|row| Band {
@@ -50,6 +52,7 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
             height: TILE.min(height - row * TILE),
             color: colors.get_mut(row).and_then(Option::take),
             depth: depths.as_mut().and_then(Iterator::next),
+            stencil: stencils.as_mut().and_then(Iterator::next),
             ids: ids.as_mut().and_then(Iterator::next),
         })
         .collect()
@@ -73,6 +76,21 @@ impl ColorFormat {
     }
 }
 
+/// What a draw does with a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touches {
+    /// Values the target is cleared to first.
+    pub(crate) clear: Option<Clear>,
+    /// Whether colours are read or written.
+    pub(crate) color: bool,
+    /// Whether depths are written.
+    pub(crate) depth: bool,
+    /// Whether stencil values are read or written.
+    pub(crate) stencil: bool,
+    /// Whether the depth test passes only what is farther.
+    pub(crate) reversed: bool,
+}
+
 /// The tile being drawn.
 #[derive(Debug)]
 pub(crate) struct TileBuffer {
@@ -81,8 +99,9 @@ pub(crate) struct TileBuffer {
     /// Colour as four planes.
     pub(crate) rgba: [BlockPlane<f32>; 4],
     pub(crate) depth: BlockPlane<f32>,
+    pub(crate) stencil: BlockPlane<u8>,
     pub(crate) ids: BlockPlane<u32>,
-    /// Per block, no stored depth is greater.
+    /// Per block, no stored depth is greater; where the depth test is reversed, no negated one.
     pub(crate) farthest: [f32; BLOCKS * BLOCKS],
     /// Blocks that have been brought in, bit by bit.
     pub(crate) present: u64,
@@ -94,6 +113,7 @@ impl Default for TileBuffer {
             rgba8: block_plane(0),
             rgba: [block_plane(0.0), block_plane(0.0), block_plane(0.0), block_plane(0.0)],
             depth: block_plane(0.0),
+            stencil: block_plane(0),
             ids: block_plane(0),
             farthest: [f32::INFINITY; BLOCKS * BLOCKS],
             present: 0,
@@ -110,25 +130,40 @@ fn row_range(width: usize, tile_x: usize, block: usize, y: usize) -> std::ops::R
 
 impl TileBuffer {
     /// Memory of its planes.
-    pub(crate) const BYTES: usize = 7 * 4 * TILE * TILE;
+    pub(crate) const BYTES: usize = (7 * 4 + 1) * TILE * TILE;
 
     /// Brings a block in, from the target or freshly cleared.
     #[cold]
     #[inline(never)]
-    pub(crate) fn fetch(&mut self, band: &Band<'_>, tile_x: usize, block: usize, clear: Option<&Clear>) {
+    pub(crate) fn fetch(&mut self, band: &Band<'_>, tile_x: usize, block: usize, touches: &Touches) {
+        let clear = touches.clear;
         self.present |= 1 << block;
         self.farthest[block] = f32::INFINITY;
         match clear.and_then(|c| c.color) {
             Some(rgba) => self.clear_color(block, rgba, band),
-            None => self.fetch_color(band, tile_x, block),
+            None if touches.color => self.fetch_color(band, tile_x, block),
+            None => {}
         }
         if let Some(plane) = &band.depth {
             match clear.and_then(|c| c.depth) {
                 Some(depth) => fill(&mut self.depth[block], depth),
                 None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
             }
-            self.farthest[block] =
-                self.depth[block].as_flattened().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            let depths = self.depth[block].as_flattened().iter();
+            self.farthest[block] = if touches.reversed {
+                -depths.copied().fold(f32::INFINITY, f32::min)
+            } else {
+                depths.copied().fold(f32::NEG_INFINITY, f32::max)
+            };
+        }
+        if let Some(plane) = &band.stencil {
+            match clear.and_then(|c| c.stencil) {
+                Some(value) => fill(&mut self.stencil[block], value),
+                None if touches.stencil => {
+                    fetch_plane(&mut self.stencil[block], plane, band, tile_x, block);
+                }
+                None => {}
+            }
         }
         if let Some(plane) = &band.ids {
             match clear.and_then(|c| c.id) {
@@ -176,32 +211,33 @@ impl TileBuffer {
     }
 
     /// Takes the tile back to the target. With `clear`, blocks that were never touched are cleared.
-    pub(crate) fn store(
-        &mut self,
-        band: &mut Band<'_>,
-        tile_x: usize,
-        clear: Option<&Clear>,
-        depth_written: bool,
-    ) {
+    pub(crate) fn store(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
+        let clear = touches.clear;
         let (width, height) = (band.width, band.height);
         let present = std::mem::take(&mut self.present);
         if present == 0 && clear.is_none() {
             return;
         }
         let rows = Rows { width, height, tile_x, present };
-        match (&mut band.color, clear.map(|c| c.color)) {
+        let color = clear.and_then(|c| c.color);
+        match (band.color.as_mut().filter(|_| touches.color || color.is_some()), color) {
             (Some(ColorPlane::Rgba8(p)), clear) => {
-                let clear = clear.flatten().map(rgba8_from_rgba);
+                let clear = clear.map(rgba8_from_rgba);
                 rows.store(p, clear, |block, row| eight(&self.rgba8[block], row).map(u32::to_le_bytes));
             }
-            (Some(ColorPlane::Rgba32F(p)), clear) => rows.store(p, clear.flatten(), |block, row| {
+            (Some(ColorPlane::Rgba32F(p)), clear) => rows.store(p, clear, |block, row| {
                 let at = |k: usize, x: usize| self.rgba[k][block].as_flattened()[row + x];
                 std::array::from_fn(|x| [at(0, x), at(1, x), at(2, x), at(3, x)])
             }),
             (None, _) => {}
         }
-        if let Some(p) = band.depth.as_mut().filter(|_| depth_written || clear.is_some()) {
-            rows.store(p, clear.and_then(|c| c.depth), |block, row| eight(&self.depth[block], row));
+        let depth = clear.and_then(|c| c.depth);
+        if let Some(p) = band.depth.as_mut().filter(|_| touches.depth || depth.is_some()) {
+            rows.store(p, depth, |block, row| eight(&self.depth[block], row));
+        }
+        let stencil = clear.and_then(|c| c.stencil);
+        if let Some(p) = band.stencil.as_mut().filter(|_| touches.stencil || stencil.is_some()) {
+            rows.store(p, stencil, |block, row| eight(&self.stencil[block], row));
         }
         if let Some(p) = &mut band.ids {
             rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block], row));

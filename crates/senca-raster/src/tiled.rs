@@ -8,9 +8,10 @@ use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
+use crate::stage::{StageNeeds, stage_of};
 use crate::target::{Clear, Target};
 use crate::textured::TextureQueue;
-use crate::tile::{Band, ColorFormat, TileBuffer, bands};
+use crate::tile::{Band, ColorFormat, TileBuffer, Touches, bands};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Mutex;
 
@@ -132,8 +133,14 @@ fn pass<'a>(
 ) -> Pass<'a> {
     let (has_depth, format) = (target.depth.is_some(), ColorFormat::of(target));
     let color = ColorPath::of(shading, format);
+    let stage = stage_of(shading);
+    let needs = stage.map(StageNeeds::of).unwrap_or_default();
     let custom = color == ColorPath::Plain;
-    let hides_farther = has_depth && matches!(state.depth_test, Compare::Less | Compare::LessEqual);
+    let tests_depth = has_depth && !needs.tests_depth;
+    let reversed = matches!(state.depth_test, Compare::Greater | Compare::GreaterEqual);
+    let ordered = reversed || matches!(state.depth_test, Compare::Less | Compare::LessEqual);
+    let hides_farther = tests_depth && ordered;
+    let drops = if stage.is_some() { needs.discards } else { custom };
     let slots = slots(shading, color, triangles.stride);
     let texture = match shading {
         Shading::Fixed { texture: Some(unit), .. } if color != ColorPath::None => {
@@ -146,13 +153,22 @@ fn pass<'a>(
         state,
         setup: SetupState::new(state),
         shading,
-        clear,
+        touches: Touches {
+            clear,
+            color: if stage.is_some() { needs.color } else { color != ColorPath::None },
+            depth: has_depth && (state.depth_write || needs.tests_depth),
+            stencil: needs.stencil,
+            reversed,
+        },
         format,
-        has_depth,
+        stage,
+        needs,
+        has_depth: tests_depth,
         has_ids: target.ids.is_some(),
-        writes_depth: has_depth && state.depth_write,
+        writes_depth: tests_depth && state.depth_write,
         hides_farther,
-        lowers_farthest: hides_farther && state.depth_write && !custom,
+        reversed,
+        lowers_farthest: hides_farther && state.depth_write && !drops,
         needs_depth: has_depth || custom,
         color,
         texture,
@@ -202,7 +218,7 @@ impl Frame<'_> {
                 let tiles = band.row * columns..(band.row + 1) * columns;
                 (self.runs.iter().map(|r| r.work(tiles.clone())).sum::<u64>(), band)
             })
-            .filter(|(references, _)| *references > 0 || self.pass.clear.is_some())
+            .filter(|(references, _)| *references > 0 || self.pass.touches.clear.is_some())
             .collect();
         work.sort_by_key(|w| std::cmp::Reverse(w.0));
         let spare = Mutex::new(std::mem::take(buffers));
@@ -230,7 +246,6 @@ impl Frame<'_> {
         scratch: &mut Scratch,
     ) -> FragmentCounts {
         let mut counts = FragmentCounts::default();
-        let clear: Option<&Clear> = self.pass.clear.as_ref();
         for column in 0..self.input.tiles[0] {
             let tile = band.row * self.input.tiles[0] + column;
             let (x, y) = ((column * TILE) as i32, (band.row * TILE) as i32);
@@ -253,7 +268,7 @@ impl Frame<'_> {
                 draw.flush(simd);
             }
             counts = draw.counts;
-            scratch.tile.store(band, x as usize, clear, self.pass.writes_depth);
+            scratch.tile.store(band, x as usize, &self.pass.touches);
         }
         counts
     }

@@ -71,6 +71,7 @@ impl Context {
                 color: (mask & gl::COLOR_BUFFER_BIT != 0).then_some(state.color.clear_color),
                 depth: (mask & gl::DEPTH_BUFFER_BIT != 0).then_some(state.depth.clear as f32),
                 id: None,
+                stencil: None,
             };
             if let Some(mut target) = c.framebuffers.target() {
                 target.clear(&clear);

@@ -264,7 +264,7 @@ impl<'h, R: Rasterizer> HemicubeView<'h, R> {
         let cells = (n * rows) as usize;
         let mut target =
             Target::new(n, rows)?.with_depth(&mut self.depth[..cells])?.with_ids(&mut self.items[..cells])?;
-        let clear = Clear { color: None, depth: Some(0.0), id: Some(NO_ID) };
+        let clear = Clear { color: None, depth: Some(0.0), id: Some(NO_ID), stencil: None };
         let state = State { depth_test: Compare::Greater, clear: Some(clear), ..State::default() };
         let (positions, varyings, stride) = (&self.positions[..], &[][..], 0);
         let fronts =

@@ -106,7 +106,7 @@ fn rasterizer(form: Form) -> Box<dyn Rasterizer + Send> {
     }
 }
 
-const CLEAR: Clear = Clear { color: Some([0.0, 0.0, 0.0, 1.0]), depth: Some(1.0), id: None };
+const CLEAR: Clear = Clear { color: Some([0.0, 0.0, 0.0, 1.0]), depth: Some(1.0), id: None, stencil: None };
 
 fn mesh(form: Form) -> Result<Box<Run<'static>>, Failure> {
     let sphere = BumpySphere::new();

@@ -1,0 +1,207 @@
+//! Per-fragment operations by code of the caller's, with its hands on the pixels.
+//!
+//! A [`crate::FragmentShader`] gives colours, and the rasterizer does the rest. A [`FragmentStage`] does
+//! the rest, too: it tests and changes depth, stencil and colour of sixteen pixels at a time, in
+//! whatever order its rules want. What an OpenGL state machine needs between rasterization and the
+//! framebuffer goes here.
+
+use crate::api::{Fragments, LANES, Shaded, Shading, State};
+use crate::target::{ColorPlane, Target};
+
+/// Colours fragments and merges them into the pixels. Called from several threads at once; what it
+/// does must depend on nothing but the fragments and the pixels given.
+///
+/// For each batch the rasterizer
+///
+/// 1. tests depth, unless [`FragmentStage::tests_depth`];
+/// 2. calls [`FragmentStage::shade`], unless there is nothing to shade;
+/// 3. calls [`FragmentStage::merge`] with the lanes that are left;
+/// 4. writes depth and identifiers of the lanes that returns; depth only if it has tested it.
+pub trait FragmentStage: Sync {
+    /// Whether the stage tests and writes depth itself, and so wants all covered fragments: when what
+    /// becomes of those that fail matters. Default: no, the rasterizer does it by
+    /// [`State::depth_test`] before anything is shaded.
+    fn tests_depth(&self) -> bool {
+        false
+    }
+
+    /// Whether fragments may come to nothing, in [`FragmentStage::shade`] or in
+    /// [`FragmentStage::merge`]. Default: yes. A stage that never drops any lets the rasterizer hide
+    /// more behind what it draws.
+    fn discards(&self) -> bool {
+        true
+    }
+
+    /// Whether [`FragmentStage::shade`] is to be called. Default: yes.
+    fn shades(&self) -> bool {
+        true
+    }
+
+    /// Whether colours are read or written. Default: yes.
+    fn touches_color(&self) -> bool {
+        true
+    }
+
+    /// Whether stencil values are read or written. Default: yes.
+    fn touches_stencil(&self) -> bool {
+        true
+    }
+
+    /// As [`crate::FragmentShader::shade`].
+    fn shade(&self, fragments: &Fragments<'_>, out: &mut Shaded);
+
+    /// Merges the lanes in `fragments.mask`, coloured as in `shaded`, into their pixels, and returns
+    /// those of them that have passed all tests. Pixels of other lanes must be left as they are.
+    fn merge(&self, fragments: &Fragments<'_>, shaded: &Shaded, pixels: &mut Pixels<'_>) -> u16;
+}
+
+/// Sixteen pixels of a target, in the lanes of [`Fragments`].
+#[derive(Debug)]
+pub struct Pixels<'a> {
+    /// Colours.
+    pub color: PixelColors<'a>,
+    /// Depths, if the target has them.
+    pub depth: Option<&'a mut [f32; LANES]>,
+    /// Stencil values, if the target has them.
+    pub stencil: Option<&'a mut [u8; LANES]>,
+}
+
+/// Colours of sixteen pixels.
+#[derive(Debug)]
+pub enum PixelColors<'a> {
+    /// The target has none, or the stage does not touch them.
+    None,
+    /// Of [`ColorPlane::Rgba8`]: red in the lowest byte, alpha in the highest.
+    Rgba8(&'a mut [u32; LANES]),
+    /// Of [`ColorPlane::Rgba32F`]: red, green, blue, alpha.
+    Rgba32F([&'a mut [f32; LANES]; 4]),
+}
+
+/// What a stage asks of a draw.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StageNeeds {
+    pub(crate) tests_depth: bool,
+    pub(crate) discards: bool,
+    pub(crate) shades: bool,
+    pub(crate) color: bool,
+    pub(crate) stencil: bool,
+}
+
+impl StageNeeds {
+    pub(crate) fn of(stage: &dyn FragmentStage) -> Self {
+        Self {
+            tests_depth: stage.tests_depth(),
+            discards: stage.discards(),
+            shades: stage.shades(),
+            color: stage.touches_color(),
+            stencil: stage.touches_stencil(),
+        }
+    }
+}
+
+/// The stage of a shading, if it is one.
+pub(crate) fn stage_of<'a>(shading: &Shading<'a>) -> Option<&'a dyn FragmentStage> {
+    match shading {
+        Shading::Stage(stage) => Some(*stage),
+        _ => None,
+    }
+}
+
+/// Pixels copied out of a target, two rows of 8.
+struct Copied {
+    rgba8: [u32; LANES],
+    rgba: [[f32; LANES]; 4],
+    depth: [f32; LANES],
+    stencil: [u8; LANES],
+    /// Where lane `i` is in the planes; none outside the target.
+    at: [Option<usize>; LANES],
+}
+
+impl Copied {
+    /// The pixels at (`x`, `y`) of a target whose first row is `first_row`.
+    fn new(target: &Target<'_>, x: u32, y: u32, first_row: i32) -> Self {
+        let (width, height) = (i64::from(target.width), i64::from(target.height));
+        let at = std::array::from_fn(|i| {
+            let column = i64::from(x) + (i % 8) as i64;
+            let row = i64::from(y) + (i / 8) as i64 - i64::from(first_row);
+            let inside = column < width && (0..height).contains(&row);
+            inside.then(|| (row * width + column) as usize)
+        });
+        let mut copied =
+            Self { rgba8: [0; LANES], rgba: [[0.0; LANES]; 4], depth: [0.0; LANES], stencil: [0; LANES], at };
+        for (i, at) in at.into_iter().enumerate() {
+            let Some(at) = at else { continue };
+            match &target.color {
+                Some(ColorPlane::Rgba8(p)) => copied.rgba8[i] = u32::from_le_bytes(p[at]),
+                Some(ColorPlane::Rgba32F(p)) => (0..4).for_each(|k| copied.rgba[k][i] = p[at][k]),
+                None => {}
+            }
+            copied.depth[i] = target.depth.as_ref().map_or(0.0, |p| p[at]);
+            copied.stencil[i] = target.stencil.as_ref().map_or(0, |p| p[at]);
+        }
+        copied
+    }
+
+    fn pixels(&mut self, target: &Target<'_>, needs: &StageNeeds) -> Pixels<'_> {
+        let [r, g, b, a] = &mut self.rgba;
+        Pixels {
+            color: match target.color.as_ref().filter(|_| needs.color) {
+                None => PixelColors::None,
+                Some(ColorPlane::Rgba8(_)) => PixelColors::Rgba8(&mut self.rgba8),
+                Some(ColorPlane::Rgba32F(_)) => PixelColors::Rgba32F([r, g, b, a]),
+            },
+            depth: target.depth.is_some().then_some(&mut self.depth),
+            stencil: (target.stencil.is_some() && needs.stencil).then_some(&mut self.stencil),
+        }
+    }
+
+    fn put_back(&self, target: &mut Target<'_>, lanes: u16) {
+        for i in (0..LANES).filter(|i| lanes >> i & 1 == 1) {
+            let Some(at) = self.at[i] else { continue };
+            match &mut target.color {
+                Some(ColorPlane::Rgba8(p)) => p[at] = self.rgba8[i].to_le_bytes(),
+                Some(ColorPlane::Rgba32F(p)) => p[at] = std::array::from_fn(|k| self.rgba[k][i]),
+                None => {}
+            }
+            if let Some(p) = &mut target.depth {
+                p[at] = self.depth[i];
+            }
+            if let Some(p) = &mut target.stencil {
+                p[at] = self.stencil[i];
+            }
+        }
+    }
+}
+
+/// Runs a stage on a batch whose depth has been tested if that is not the stage's business: the plain
+/// form. `first_row` is the row at which the target begins. Returns the lanes that passed.
+pub(crate) fn run_stage(
+    stage: &dyn FragmentStage,
+    target: &mut Target<'_>,
+    first_row: i32,
+    state: &State,
+    fragments: &Fragments<'_>,
+) -> u16 {
+    let needs = StageNeeds::of(stage);
+    let mut shaded = Shaded::default();
+    if needs.shades {
+        stage.shade(fragments, &mut shaded);
+    }
+    let kept = Fragments { mask: fragments.mask & shaded.keep, ..*fragments };
+    if kept.mask == 0 {
+        return 0;
+    }
+    let mut copied = Copied::new(target, fragments.x, fragments.y, first_row);
+    let passed = stage.merge(&kept, &shaded, &mut copied.pixels(target, &needs)) & kept.mask;
+    if state.depth_write && !needs.tests_depth {
+        for i in (0..LANES).filter(|i| passed >> i & 1 == 1) {
+            copied.depth[i] = fragments.depth[i];
+        }
+    }
+    copied.put_back(target, kept.mask);
+    if let Some(ids) = &mut target.ids {
+        let written = (0..LANES).filter(|i| passed >> i & 1 == 1);
+        written.filter_map(|i| copied.at[i]).for_each(|at| ids[at] = fragments.id);
+    }
+    passed
+}
