@@ -84,6 +84,38 @@ pub struct State {
     pub line_width: f32,
     /// Side of points in pixels, at least 1. Default: 1.
     pub point_size: f32,
+    /// Number of the varying that is the size of points instead. Default: none.
+    pub point_sizes: Option<usize>,
+    /// Which pixels belong to lines and points. Default: [`StrokeRule::Centres`].
+    pub strokes: StrokeRule,
+    /// Pattern lines are broken up by; it runs on from a line to the next one if that begins with the
+    /// index this one ended with. Default: none.
+    pub stipple: Option<LineStipple>,
+    /// Whether alpha is multiplied by the share of the pixel that a primitive covers, and all pixels it
+    /// touches are drawn: lines as rectangles, points as discs, of any size. Stages find the share in
+    /// [`Fragments::coverage`] and multiply by it themselves. Default: no.
+    pub antialias: bool,
+}
+
+/// Which pixels belong to lines and points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StrokeRule {
+    /// Those whose centres are passed: lines from the centre at or after the start up to the one at the
+    /// end; points as the squares about them.
+    #[default]
+    Centres,
+    /// The rules of the OpenGL specification, sections 3.3 and 3.4: lines own the pixels whose diamonds
+    /// they leave.
+    OpenGl,
+}
+
+/// A pattern of drawn and left out fragments along lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineStipple {
+    /// How often each bit is used before the next one; 0 counts as 1.
+    pub factor: u32,
+    /// Bits of drawn fragments, the lowest first.
+    pub pattern: u16,
 }
 
 impl Default for State {
@@ -101,6 +133,10 @@ impl Default for State {
             clear: None,
             line_width: 1.0,
             point_size: 1.0,
+            point_sizes: None,
+            strokes: StrokeRule::Centres,
+            stipple: None,
+            antialias: false,
         }
     }
 }

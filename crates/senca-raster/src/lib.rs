@@ -55,6 +55,8 @@ mod sample;
 pub mod scanline;
 mod setup;
 mod shade;
+mod sink;
+mod smooth;
 mod stage;
 mod target;
 mod texture;
@@ -64,8 +66,8 @@ mod tiled;
 
 pub use api::{
     Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FragmentShader, Fragments, Ids,
-    Interpolation, LANES, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading, State, TextureUnit,
-    Viewport,
+    Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading, State,
+    StrokeRule, TextureUnit, Viewport,
 };
 pub use fearless_simd::{self as simd, Level as SimdLevel};
 pub use scanline::ScanlineRasterizer;

@@ -2,21 +2,23 @@
 //!
 //! A line is cut by the view volume in homogeneous coordinates, then walked along the axis it runs
 //! along more: one pixel (or, if wide, one row or column of pixels across) for each pixel centre from
-//! its start up to, but without, its end. The other coordinate is exact in integers: what Bresenham's
-//! algorithm (1965) gives for corners on a raster of 1/256 pixel. A point is the square of pixels whose
-//! centres lie within it.
+//! its start up to, but without, its end. The other coordinate is exact in integers, carried from step
+//! to step as Bresenham's algorithm (1965) does for corners on a raster of 1/256 pixel. A point is the
+//! square of pixels whose centres lie within it.
+//!
+//! The rules of OpenGL ([`StrokeRule::OpenGl`]; specification of version 1.5, sections 3.3 and 3.4)
+//! differ at the ends: a line owns the pixels whose diamonds it leaves, and on ties everything lies a
+//! little lower and to the left.
 //!
 //! Several threads draw strips of rows, each all primitives in order as far as they lie in its strip:
 //! every pixel meets its fragments in the same order as with one strip that is the whole picture.
 
-use crate::api::{
-    Counters, Fragments, Interpolation, LANES, MAX_VARYINGS, Primitives, Shaded, Shading, State,
-};
-use crate::assemble::{TriangleVaryings, varyings_of, vertex_count};
+use crate::api::{Counters, Interpolation, LineStipple, Primitives, Shading, State, StrokeRule};
+use crate::assemble::{varyings_of, vertex_count};
 use crate::clip::{VIEW_VOLUME, clip_line, wholly_outside};
-use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, Setup, SetupState, ceil_div};
-use crate::shade::shade_plain;
-use crate::stage::{FragmentStage, run_stage, stage_of};
+use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, ceil_div};
+use crate::sink::Sink;
+use crate::smooth;
 use crate::target::Target;
 use rayon::prelude::*;
 use senca_math::glam::Vec4;
@@ -56,13 +58,29 @@ pub(crate) fn draw_points(
     draw::<1, Square>(target, points, state, shading, threads)
 }
 
-/// A primitive of `N` corners on screen.
-trait Stroke<const N: usize>: Sized + Send + Sync {
-    /// From corners in clip space, with whether it was cut; `None` when none of it is in the view volume.
-    fn new(map: &ScreenMap, clip: [Vec4; N]) -> Option<(Self, bool)>;
+/// What strokes are made with.
+pub(crate) struct Pen<'a> {
+    pub(crate) map: &'a ScreenMap,
+    pub(crate) state: &'a State,
+}
 
-    /// Hands those of its fragments to `sink` that are in the sink's rows. `vertices` are its corners.
-    fn draw(&self, sink: &mut Sink<'_, '_>, primitives: &Primitives<'_>, vertices: [u32; N]);
+/// A primitive of `N` corners on screen.
+pub(crate) trait Stroke<const N: usize>: Sized + Send + Sync {
+    /// From corners in clip space and their varyings, with whether it was cut; `None` when none of it
+    /// is in the view volume.
+    fn new(pen: &Pen<'_>, clip: [Vec4; N], values: [&[f32]; N]) -> Option<(Self, bool)>;
+
+    /// Rows of the target it has pixels in, or more.
+    fn rows(&self) -> Range<i64>;
+
+    /// Fragments along it, which is how far a stipple pattern advances.
+    fn length(&self) -> u64 {
+        0
+    }
+
+    /// Hands those of its fragments to `sink` that are in the sink's rows. `values` are the varyings of
+    /// its corners, `stipple` how far the pattern is at its start.
+    fn draw(&self, sink: &mut Sink<'_, '_>, values: [&[f32]; N], stipple: u64);
 }
 
 /// What became of a primitive.
@@ -72,7 +90,7 @@ enum Prepared<S> {
     Ready { stroke: S, cut: bool },
 }
 
-fn draw<const N: usize, S: Stroke<N>>(
+pub(crate) fn draw<const N: usize, S: Stroke<N>>(
     target: &mut Target<'_>,
     primitives: &Primitives<'_>,
     state: &State,
@@ -81,14 +99,17 @@ fn draw<const N: usize, S: Stroke<N>>(
 ) -> Counters {
     crate::pixel::clear_in_scissor(target, state);
     let map = ScreenMap::new(target.width, target.height, state);
+    let pen = Pen { map: &map, state };
     let count = vertex_count(primitives);
     let prepare = |vertices: &[u32; N]| match corners(primitives, *vertices, count) {
         None => Prepared::Invalid,
-        Some(clip) => {
-            S::new(&map, clip).map_or(Prepared::Outside, |(stroke, cut)| Prepared::Ready { stroke, cut })
-        }
+        Some(clip) => match S::new(&pen, clip, vertices.map(|i| varyings_of(primitives, i))) {
+            None => Prepared::Outside,
+            Some((stroke, cut)) => Prepared::Ready { stroke, cut },
+        },
     };
     let mut counters = Counters::default();
+    let mut pattern = Pattern::default();
     for (r, run) in primitives.indices.as_chunks::<N>().0.chunks(RUN).enumerate() {
         let threads = if run.len() < WORTH_SHARING { 1 } else { threads };
         let prepared: Vec<Prepared<S>> = match threads {
@@ -96,12 +117,19 @@ fn draw<const N: usize, S: Stroke<N>>(
             _ => run.par_iter().with_min_len(WORTH_SHARING).map(prepare).collect(),
         };
         prepared.iter().for_each(|p| p.count(&mut counters));
+        let starts = state.stipple.map(|_| pattern.starts(run, &prepared)).unwrap_or_default();
+        let rows: Vec<[i32; 2]> = prepared.iter().map(|p| p.rows(map.bounds.y1)).collect();
         counters += in_strips(target, threads, |strip, first_row| {
             let mut sink = Sink::new(strip, first_row, state, shading, &map);
-            for (n, (prepared, &vertices)) in prepared.iter().zip(run).enumerate() {
-                if let Prepared::Ready { stroke, .. } = prepared {
-                    sink.id = primitives.ids.of(r * RUN + n);
-                    stroke.draw(&mut sink, primitives, vertices);
+            let [top, bottom] = [sink.bounds.y0, sink.bounds.y1];
+            for (n, &[first, end]) in rows.iter().enumerate() {
+                if first >= bottom || end <= top {
+                    continue;
+                }
+                if let Prepared::Ready { stroke, .. } = &prepared[n] {
+                    sink.begin(primitives.ids.of(r * RUN + n), true, primitives.stride);
+                    let values = run[n].map(|i| varyings_of(primitives, i));
+                    stroke.draw(&mut sink, values, starts.get(n).copied().unwrap_or(0));
                 }
             }
             sink.counters
@@ -121,6 +149,52 @@ impl<S> Prepared<S> {
                 counters.clipped += u64::from(*cut);
             }
         }
+    }
+
+    /// Rows it has pixels in; none unless it is drawn.
+    fn rows<const N: usize>(&self, end: i32) -> [i32; 2]
+    where
+        S: Stroke<N>,
+    {
+        let Self::Ready { stroke, .. } = self else { return [0, 0] };
+        let rows = stroke.rows();
+        [rows.start.clamp(0, i64::from(end)) as i32, rows.end.clamp(0, i64::from(end)) as i32]
+    }
+}
+
+/// How far the stipple pattern is. It runs on from a line to the next one if that begins with the
+/// vertex this one ended with, and restarts otherwise.
+#[derive(Default)]
+struct Pattern {
+    last: Option<u32>,
+    advanced: u64,
+}
+
+impl Pattern {
+    fn starts<const N: usize, S: Stroke<N>>(
+        &mut self,
+        run: &[[u32; N]],
+        prepared: &[Prepared<S>],
+    ) -> Vec<u64> {
+        let start = |(vertices, prepared): (&[u32; N], &Prepared<S>)| {
+            if self.last != vertices.first().copied() {
+                self.advanced = 0;
+            }
+            let start = self.advanced;
+            self.last = vertices.last().copied();
+            if let Prepared::Ready { stroke, .. } = prepared {
+                self.advanced += stroke.length();
+            }
+            start
+        };
+        run.iter().zip(prepared).map(start).collect()
+    }
+}
+
+impl LineStipple {
+    /// Whether fragment `n` of a line is drawn.
+    pub(crate) fn draws(&self, n: u64) -> bool {
+        self.pattern >> (n / u64::from(self.factor.max(1)) % 16) & 1 == 1
     }
 }
 
@@ -160,6 +234,9 @@ struct Line {
     /// The part of the submitted line that is left, in its own parameter.
     part: [f32; 2],
     origin: [i64; 2],
+    walk: Walk,
+    /// The rectangle an antialiased line covers, in pixels of the target.
+    outline: Option<[[f64; 2]; 4]>,
 }
 
 /// Steps of a line from pixel to pixel along the axis it runs along more.
@@ -168,6 +245,8 @@ struct Walk {
     along_x: bool,
     /// Pixels across.
     width: i64,
+    /// Units of `start` and `way` in a pixel.
+    sub: i64,
     /// First pixel along the axis, and its direction.
     first: i64,
     sign: i64,
@@ -178,7 +257,8 @@ struct Walk {
 }
 
 impl Stroke<2> for Line {
-    fn new(map: &ScreenMap, clip: [Vec4; 2]) -> Option<(Self, bool)> {
+    fn new(pen: &Pen<'_>, clip: [Vec4; 2], _: [&[f32]; 2]) -> Option<(Self, bool)> {
+        let (map, state) = (pen.map, pen.state);
         let part @ [t0, t1] = clip_line(clip[0], clip[1], &VIEW_VOLUME)?;
         let at = |t: f32| match t {
             0.0 => clip[0],
@@ -186,35 +266,92 @@ impl Stroke<2> for Line {
             _ => clip[0] * (1.0 - t) + clip[1] * t,
         };
         let [start, end] = part.map(|t| map.project_clipped(at(t)));
-        let line = Self { start, end, part, origin: map.origin.map(i64::from) };
+        let walk = Walk::new(&start, &end, state.line_width, state.strokes);
+        let outline = state.antialias.then(|| smooth::line_outline(map, [&start, &end], state.line_width));
+        let line = Self { start, end, part, origin: map.origin.map(i64::from), walk, outline };
         Some((line, t0 > 0.0 || t1 < 1.0))
     }
 
-    fn draw(&self, sink: &mut Sink<'_, '_>, lines: &Primitives<'_>, vertices: [u32; 2]) {
-        let walk = Walk::new(self, sink.state.line_width);
-        let values = vertices.map(|i| varyings_of(lines, i));
+    fn rows(&self) -> Range<i64> {
+        if let Some(outline) = &self.outline {
+            let [_, rows] = smooth::pixel_box(outline);
+            return rows;
+        }
+        if self.walk.count == 0 {
+            return 0..0;
+        }
+        let last = self.walk.at(self.walk.count - 1);
+        let (a, b) =
+            if self.walk.along_x { (self.walk.at(0).1, last.1) } else { (self.walk.at(0).0, last.0) };
+        let high = if self.walk.along_x { self.walk.width } else { 1 };
+        a.min(b) + self.origin[1]..a.max(b) + high + self.origin[1]
+    }
+
+    fn length(&self) -> u64 {
+        self.walk.count as u64
+    }
+
+    fn draw(&self, sink: &mut Sink<'_, '_>, values: [&[f32]; 2], stipple: u64) {
         let interpolation = sink.state.interpolation;
-        let rows = i64::from(sink.bounds.y0) - self.origin[1]..i64::from(sink.bounds.y1) - self.origin[1];
-        for step in walk.steps_in(&rows) {
-            let (a, b, t) = walk.at(step);
+        let along = usize::from(!self.walk.along_x);
+        let at = |x: i32, y: i32, out: &mut [f32]| {
+            let t = self.walk.share(i64::from([x, y][along]) - self.origin[along]);
             let parameter = self.parameter(t, interpolation == Interpolation::Screen);
-            sink.values.count = lines.stride;
-            for (k, terms) in sink.values.terms.iter_mut().enumerate().take(lines.stride) {
-                *terms = match interpolation {
-                    Interpolation::FlatFirst => [values[0][k], 0.0, 0.0],
-                    Interpolation::FlatLast => [values[1][k], 0.0, 0.0],
-                    _ => [values[0][k] + parameter * (values[1][k] - values[0][k]), 0.0, 0.0],
+            for (k, out) in out.iter_mut().enumerate() {
+                *out = match interpolation {
+                    Interpolation::FlatFirst => values[0][k],
+                    Interpolation::FlatLast => values[1][k],
+                    _ => values[0][k] + parameter * (values[1][k] - values[0][k]),
                 };
             }
-            for k in 0..walk.width {
-                let (x, y) = if walk.along_x { (a, b + k) } else { (b + k, a) };
-                sink.fragment(x + self.origin[0], y + self.origin[1], self.depth(t));
-            }
+        };
+        match &self.outline {
+            Some(outline) => self.draw_smooth(sink, outline, stipple, &at),
+            None => self.draw_steps(sink, stipple, &at),
         }
+        sink.end(&at);
     }
 }
 
 impl Line {
+    fn draw_steps(&self, sink: &mut Sink<'_, '_>, stipple: u64, values: &impl Fn(i32, i32, &mut [f32])) {
+        let walk = &self.walk;
+        let rows = i64::from(sink.bounds.y0) - self.origin[1]..i64::from(sink.bounds.y1) - self.origin[1];
+        let pattern = sink.state.stipple;
+        let steps = walk.steps_in(&rows);
+        let mut across = Across::new(walk, steps.start);
+        for step in steps {
+            let (a, b) = (walk.first + walk.sign * step, across.pixel);
+            across.advance();
+            if pattern.is_some_and(|p| !p.draws(stipple + step as u64)) {
+                continue;
+            }
+            let depth = self.depth(walk.share(a));
+            for k in 0..walk.width {
+                let (x, y) = if walk.along_x { (a, b + k) } else { (b + k, a) };
+                sink.fragment([x + self.origin[0], y + self.origin[1]], depth, 1.0, values);
+            }
+        }
+    }
+
+    fn draw_smooth(
+        &self,
+        sink: &mut Sink<'_, '_>,
+        outline: &[[f64; 2]; 4],
+        stipple: u64,
+        values: &impl Fn(i32, i32, &mut [f32]),
+    ) {
+        let along = usize::from(!self.walk.along_x);
+        let pattern = sink.state.stipple;
+        smooth::for_each_pixel(outline, sink.bounds, |pixel, coverage| {
+            let a = pixel[along] - self.origin[along];
+            let step = ((a - self.walk.first) * self.walk.sign).max(0) as u64;
+            if pattern.is_none_or(|p| p.draws(stipple + step)) {
+                sink.fragment(pixel, self.depth(self.walk.share(a)), coverage, values);
+            }
+        });
+    }
+
     fn depth(&self, t: f32) -> f32 {
         (self.start.z + t * (self.end.z - self.start.z)).clamp(0.0, 1.0)
     }
@@ -228,39 +365,90 @@ impl Line {
     }
 }
 
+/// `a / b` rounded down, for positive `b`.
+fn floor_div(a: i64, b: i64) -> i64 {
+    a.div_euclid(b)
+}
+
 impl Walk {
-    fn new(line: &Line, width: f32) -> Self {
-        let from = [line.start.x, line.start.y].map(i64::from);
-        let to = [line.end.x, line.end.y].map(i64::from);
+    fn new(start: &ScreenVertex, end: &ScreenVertex, width: f32, rule: StrokeRule) -> Self {
+        // A sub-pixel of OpenGL's rule is a quarter as long, so that "a little lower" can be said.
+        let fine = rule == StrokeRule::OpenGl;
+        let sub = if fine { 4 * i64::from(SUB) } else { i64::from(SUB) };
+        let place =
+            |v: &ScreenVertex| [v.x, v.y].map(|c| if fine { 4 * i64::from(c) - 1 } else { i64::from(c) });
+        let (from, to) = (place(start), place(end));
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let along_x = dx.abs() >= dy.abs();
         let (start, way) = if along_x { (from, [dx, dy]) } else { ([from[1], from[0]], [dy, dx]) };
-        let (sub, half) = (i64::from(SUB), i64::from(HALF));
+        let half = sub / 2;
         // Pixel centres from the start, included, to the end, not included, whichever way it runs.
         let sign = way[0].signum();
         let first = sign * ceil_div(sign * (start[0] - half), sub);
         let count = (ceil_div(sign * (start[0] + way[0] - half), sub) - sign * first).max(0);
-        Self { along_x, width: whole_size(width), first, sign, count, start, way }
+        let mut walk = Self { along_x, width: whole_size(width), sub, first, sign, count, start, way };
+        if fine && sign != 0 {
+            walk.leave_diamonds();
+        }
+        walk
     }
 
-    /// Pixel along, first pixel across, and the share of the way to the end.
-    fn at(&self, step: i64) -> (i64, i64, f32) {
-        let (sub, half) = (i64::from(SUB), i64::from(HALF));
+    /// Adds the first pixel if the line begins in its diamond beyond its centre, and takes away the
+    /// last one if the line ends in its diamond.
+    fn leave_diamonds(&mut self) {
+        let half = self.sub / 2;
+        let in_diamond = |p: [i64; 2]| {
+            let off = p.map(|c| (c - floor_div(c, self.sub) * self.sub - half).abs());
+            off[0] + off[1] < half
+        };
+        let beyond_centre = |c: i64| self.sign * (c - floor_div(c, self.sub) * self.sub - half) > 0;
+        let end = [self.start[0] + self.way[0], self.start[1] + self.way[1]];
+        let add = beyond_centre(self.start[0]) && in_diamond(self.start);
+        let drop = beyond_centre(end[0]) && in_diamond(end);
+        if add {
+            self.first -= self.sign;
+            self.count += 1;
+        }
+        self.count = (self.count - i64::from(drop)).max(0);
+    }
+
+    /// The share of the way to the end at pixel `a` along.
+    #[inline(always)]
+    fn share(&self, a: i64) -> f32 {
+        let run = a * self.sub + self.sub / 2 - self.start[0];
+        if self.way[0] == 0 {
+            return 0.0;
+        }
+        (run as f32 / self.way[0] as f32).clamp(0.0, 1.0)
+    }
+
+    /// Where the lower side of the line is at pixel `a` along, times `self.sub * length`.
+    fn offset(&self, a: i64) -> i64 {
         let [length, across] = self.way;
+        let run = a * self.sub + self.sub / 2 - self.start[0];
+        self.start[1] * length.abs() + self.sign * run * across
+            - (self.width - 1) * (self.sub / 2) * length.abs()
+    }
+
+    /// Pixel along and first pixel across.
+    fn at(&self, step: i64) -> (i64, i64) {
         let a = self.first + self.sign * step;
-        let run = a * sub + half - self.start[0];
-        let offset =
-            self.start[1] * length.abs() + self.sign * run * across - (self.width - 1) * half * length.abs();
-        (a, offset.div_euclid(sub * length.abs()), run as f32 / length as f32)
+        (a, self.offset(a).div_euclid((self.sub * self.way[0].abs()).max(1)))
     }
 
     /// The steps that have pixels in `rows`, counted from the origin.
     fn steps_in(&self, rows: &Range<i64>) -> Range<i64> {
         let first_row = |step: i64| {
-            let (a, b, _) = self.at(step);
+            let (a, b) = self.at(step);
             if self.along_x { b } else { a }
         };
         let high = if self.along_x { self.width } else { 1 };
+        if self.count > 0 {
+            let (a, b) = (first_row(0), first_row(self.count - 1));
+            if a.min(b) >= rows.start && a.max(b) + high <= rows.end {
+                return 0..self.count;
+            }
+        }
         let falls = if self.along_x { self.way[1] < 0 } else { self.sign < 0 };
         let (begins_late, ends_early) =
             (|step| first_row(step) >= rows.end, |step| first_row(step) + high <= rows.start);
@@ -286,136 +474,100 @@ impl Walk {
     }
 }
 
+/// The first pixel across, from step to step.
+struct Across {
+    pixel: i64,
+    rest: i64,
+    step: i64,
+    step_rest: i64,
+    whole: i64,
+}
+
+impl Across {
+    fn new(walk: &Walk, step: i64) -> Self {
+        let [length, across] = walk.way;
+        let whole = (walk.sub * length.abs()).max(1);
+        let offset = walk.offset(walk.first + walk.sign * step);
+        let change = walk.sub * across;
+        Self {
+            pixel: offset.div_euclid(whole),
+            rest: offset.rem_euclid(whole),
+            step: change.div_euclid(whole),
+            step_rest: change.rem_euclid(whole),
+            whole,
+        }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self) {
+        self.pixel += self.step;
+        self.rest += self.step_rest;
+        if self.rest >= self.whole {
+            self.rest -= self.whole;
+            self.pixel += 1;
+        }
+    }
+}
+
 /// A point on screen.
 struct Square {
-    at: ScreenVertex,
+    depth: f32,
+    /// First pixel and pixels along a side; for an antialiased point the box around it.
+    first: [i64; 2],
+    side: i64,
+    /// Centre in pixels and diameter of an antialiased point.
+    disc: Option<([f64; 2], f64)>,
 }
 
 impl Stroke<1> for Square {
-    fn new(map: &ScreenMap, [clip]: [Vec4; 1]) -> Option<(Self, bool)> {
+    fn new(pen: &Pen<'_>, [clip]: [Vec4; 1], [values]: [&[f32]; 1]) -> Option<(Self, bool)> {
+        let (map, state) = (pen.map, pen.state);
         let inside = !wholly_outside(&[clip], &VIEW_VOLUME) && clip.w > 0.0;
-        inside.then(|| (Self { at: map.project_clipped(clip) }, false))
+        if !inside {
+            return None;
+        }
+        let at = map.project_clipped(clip);
+        let varying = state.point_sizes.map(|k| values.get(k).copied().unwrap_or(1.0));
+        let size = varying.unwrap_or(state.point_size);
+        if state.antialias {
+            let diameter = f64::from(size.clamp(0.0, MAX_SIZE));
+            let centre = smooth::pixel_place(map, &at);
+            let first = centre.map(|c| (c - 0.5 * diameter).floor() as i64);
+            let disc = Some((centre, diameter));
+            return Some((Self { depth: at.z, first, side: diameter.ceil() as i64 + 1, disc }, false));
+        }
+        let side = whole_size(size);
+        let first = |c: i32, origin: i32| {
+            let (c, sub) = (i64::from(c), i64::from(SUB));
+            let first = match state.strokes {
+                StrokeRule::Centres => ceil_div(c - side * i64::from(HALF) - i64::from(HALF), sub),
+                StrokeRule::OpenGl => floor_div(c - (side - 1) * i64::from(HALF), sub),
+            };
+            first + i64::from(origin)
+        };
+        let first = [first(at.x, map.origin[0]), first(at.y, map.origin[1])];
+        Some((Self { depth: at.z, first, side, disc: None }, false))
     }
 
-    fn draw(&self, sink: &mut Sink<'_, '_>, points: &Primitives<'_>, [vertex]: [u32; 1]) {
-        let values = varyings_of(points, vertex);
-        sink.values.count = values.len();
-        for (terms, &value) in sink.values.terms.iter_mut().zip(values) {
-            *terms = [value, 0.0, 0.0];
+    fn rows(&self) -> Range<i64> {
+        self.first[1]..self.first[1] + self.side
+    }
+
+    fn draw(&self, sink: &mut Sink<'_, '_>, [values]: [&[f32]; 1], _: u64) {
+        let same = |_: i32, _: i32, out: &mut [f32]| out.copy_from_slice(&values[..out.len()]);
+        if let Some((centre, diameter)) = self.disc {
+            smooth::for_each_pixel(&smooth::disc(centre, diameter), sink.bounds, |pixel, coverage| {
+                sink.fragment(pixel, self.depth, coverage, &same);
+            });
+            sink.end(&same);
+            return;
         }
-        let side = whole_size(sink.state.point_size);
-        let first = |c: i32, origin: i32| {
-            let corner = i64::from(c) - side * i64::from(HALF) - i64::from(HALF);
-            ceil_div(corner, i64::from(SUB)) + i64::from(origin)
-        };
-        let (x, y) = (first(self.at.x, sink.map.origin[0]), first(self.at.y, sink.map.origin[1]));
-        let b = sink.bounds;
-        for row in y.max(i64::from(b.y0))..(y + side).min(i64::from(b.y1)) {
-            for column in x.max(i64::from(b.x0))..(x + side).min(i64::from(b.x1)) {
-                sink.fragment(column, row, self.at.z);
+        let ([x, y], b) = (self.first, sink.bounds);
+        for row in y.max(i64::from(b.y0))..(y + self.side).min(i64::from(b.y1)) {
+            for column in x.max(i64::from(b.x0))..(x + self.side).min(i64::from(b.x1)) {
+                sink.fragment([column, row], self.depth, 1.0, &same);
             }
         }
-    }
-}
-
-/// Where single fragments go: a strip of the target.
-struct Sink<'a, 't> {
-    target: &'a mut Target<'t>,
-    /// Row of the whole target at which the strip begins.
-    first_row: i32,
-    /// Pixels of the whole target that may be written.
-    bounds: Bounds,
-    state: &'a State,
-    shading: &'a Shading<'a>,
-    map: &'a ScreenMap,
-    setup: Setup,
-    values: TriangleVaryings,
-    id: u32,
-    counters: Counters,
-}
-
-impl<'a, 't> Sink<'a, 't> {
-    fn new(
-        target: &'a mut Target<'t>,
-        first_row: i32,
-        state: &'a State,
-        shading: &'a Shading<'a>,
-        map: &'a ScreenMap,
-    ) -> Self {
-        // A triangle whose weights do not change: varyings have their base value everywhere.
-        let setup = Setup::new([ScreenVertex::default(); 3], 1, &SetupState::new(&State::default()));
-        let strip =
-            Bounds { x0: 0, y0: first_row, x1: target.width as i32, y1: first_row + target.height as i32 };
-        let (bounds, values) = (strip.intersect(map.bounds), TriangleVaryings::default());
-        let counters = Counters::default();
-        Self { target, first_row, bounds, state, shading, map, setup, values, id: 0, counters }
-    }
-
-    fn fragment(&mut self, x: i64, y: i64, depth: f32) {
-        let b = self.bounds;
-        let inside =
-            x >= i64::from(b.x0) && x < i64::from(b.x1) && y >= i64::from(b.y0) && y < i64::from(b.y1);
-        if !inside {
-            return;
-        }
-        let (x, y) = (x as i32, y as i32);
-        let row = y - self.first_row;
-        self.counters.tested += 1;
-        let stage = stage_of(self.shading);
-        let tests_here = stage.is_none_or(|stage| !stage.tests_depth());
-        if tests_here && !crate::pixel::depth_passes(self.target, self.state, x, row, depth) {
-            return;
-        }
-        if let Some(stage) = stage {
-            return self.staged(stage, x, y, depth);
-        }
-        self.counters.passed += 1;
-        let Some(rgba) = self.shade(x, y, depth) else { return };
-        let rgba = Some(rgba).filter(|_| !matches!(self.shading, Shading::None));
-        crate::pixel::write(self.target, self.state, x, row, depth, self.id, rgba);
-    }
-
-    /// Hands the fragment to the stage.
-    fn staged(&mut self, stage: &dyn FragmentStage, x: i32, y: i32, depth: f32) {
-        let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
-        let (fragments, _) = self.fragments(&mut varyings, x, y, depth);
-        let passed = run_stage(stage, self.target, self.first_row, self.state, &fragments);
-        self.counters.shaded += 1;
-        self.counters.passed += u64::from(passed.count_ones());
-    }
-
-    /// A batch of one fragment, and its lane.
-    fn fragments<'v>(
-        &self,
-        varyings: &'v mut [[f32; LANES]; MAX_VARYINGS],
-        x: i32,
-        y: i32,
-        depth: f32,
-    ) -> (Fragments<'v>, usize) {
-        let lane = ((y & 1) * 8 + (x & 7)) as usize;
-        for (plane, terms) in varyings.iter_mut().zip(&self.values.terms).take(self.values.count) {
-            *plane = [terms[0]; LANES];
-        }
-        let fragments = Fragments {
-            x: (x & !7) as u32,
-            y: (y & !1) as u32,
-            mask: 1 << lane,
-            depth: [depth; LANES],
-            varyings: &varyings[..self.values.count],
-            id: self.id,
-            front: true,
-            coverage: None,
-        };
-        (fragments, lane)
-    }
-
-    /// Colour of the pixel; `None` when it is discarded.
-    fn shade(&mut self, x: i32, y: i32, depth: f32) -> Option<[f32; 4]> {
-        let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
-        let (fragments, lane) = self.fragments(&mut varyings, x, y, depth);
-        let mut shaded = Shaded::default();
-        shade_plain(self.shading, &self.setup, &self.values, [0.0; 2], &fragments, &mut shaded);
-        self.counters.shaded += u64::from(!matches!(self.shading, Shading::None));
-        (shaded.keep >> lane & 1 == 1).then(|| shaded.rgba.map(|plane| plane[lane]))
+        sink.end(&same);
     }
 }

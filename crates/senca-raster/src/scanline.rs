@@ -33,6 +33,9 @@ impl Rasterizer for ScanlineRasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
+        if state.antialias {
+            return crate::smooth::draw_triangles(target, triangles, state, shading);
+        }
         crate::pixel::clear_in_scissor(target, state);
         let map = ScreenMap::new(target.width, target.height, state);
         let mut counters = Counters::default();

@@ -73,6 +73,9 @@ impl Rasterizer for TiledRasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
+        if state.antialias {
+            return crate::smooth::draw_triangles(target, triangles, state, shading);
+        }
         let map = ScreenMap::new(target.width, target.height, state);
         let mut clear = state.clear;
         if state.scissor.is_some() {

@@ -2,8 +2,8 @@
 
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Blend, Buffers, Compare, Ids, Interpolation, Primitives, Rasterizer, ScanlineRasterizer, Shading, State,
-    TiledRasterizer, TiledSettings,
+    Blend, Buffers, Compare, Ids, Interpolation, LineStipple, Primitives, Rasterizer, ScanlineRasterizer,
+    Shading, State, StrokeRule, TiledRasterizer, TiledSettings,
 };
 
 const SIDE: u32 = 16;
@@ -152,5 +152,129 @@ fn any_number_of_threads_draws_the_same() {
                 assert!(draw(&mut TiledRasterizer::new(settings)) == plain, "{width}x{height}, {threads}");
             }
         }
+    }
+}
+
+const OPENGL: State = State {
+    viewport: None,
+    scissor: None,
+    cull: senca_raster::Cull::None,
+    depth_test: Compare::Always,
+    depth_write: true,
+    depth_range: [0.0, 1.0],
+    depth_bias: senca_raster::DepthBias { constant: 0.0, slope: 0.0 },
+    interpolation: Interpolation::Perspective,
+    blend: None,
+    clear: None,
+    line_width: 1.0,
+    point_size: 1.0,
+    point_sizes: None,
+    strokes: StrokeRule::OpenGl,
+    stipple: None,
+    antialias: false,
+};
+
+fn by_opengl(from: [f32; 2], to: [f32; 2]) -> Vec<(u32, u32)> {
+    let points = [at(from[0], from[1], 0.5), at(to[0], to[1], 0.5)];
+    drawn(&points, &[0, 1], &OPENGL, true).into_iter().map(|(x, y, _)| (x, y)).collect()
+}
+
+#[test]
+fn lines_of_opengl_own_the_diamonds_they_leave() {
+    // Begun beyond the centre: inside the diamond the pixel is left, outside it was never entered.
+    assert_eq!(by_opengl([2.75, 3.5], [5.25, 3.5]), [(2, 3), (3, 3), (4, 3)]);
+    assert_eq!(by_opengl([2.75, 3.9], [5.25, 3.9]), [(3, 3), (4, 3)]);
+    // Ended beyond the centre: inside the diamond it is not left.
+    assert_eq!(by_opengl([2.5, 3.5], [5.75, 3.5]), [(2, 3), (3, 3), (4, 3)]);
+    assert_eq!(by_opengl([2.5, 3.9], [5.75, 3.9]), [(2, 3), (3, 3), (4, 3), (5, 3)]);
+    // All of it in one diamond.
+    assert!(by_opengl([2.3, 3.5], [2.7, 3.5]).is_empty());
+    // On the border of rows and columns: a little lower and to the left.
+    assert_eq!(by_opengl([2.0, 4.0], [5.0, 4.0]), [(2, 3), (3, 3), (4, 3)]);
+    assert_eq!(by_opengl([5.0, 4.0], [5.0, 7.0]), [(4, 4), (4, 5), (4, 6)]);
+}
+
+#[test]
+fn points_of_opengl_lie_about_their_pixel() {
+    let point = |x: f32, y: f32, size: f32| {
+        let state = State { point_size: size, ..OPENGL };
+        drawn(&[at(x, y, 0.5)], &[0], &state, false).into_iter().map(|p| (p.0, p.1)).collect::<Vec<_>>()
+    };
+    assert_eq!(point(5.0, 7.0, 1.0), [(5, 7)]);
+    assert_eq!(point(5.99, 7.3, 1.0), [(5, 7)]);
+    assert_eq!(point(5.0, 7.0, 2.0), [(4, 6), (5, 6), (4, 7), (5, 7)]);
+    assert_eq!(point(5.6, 7.0, 1.6), [(5, 6), (6, 6), (5, 7), (6, 7)]);
+    assert_eq!(point(5.5, 7.5, 3.0).len(), 9);
+}
+
+#[test]
+fn stipple_runs_on_from_line_to_line() {
+    let points: Vec<Vec4> = [[0.5, 2.5], [6.5, 2.5], [12.5, 2.5]].map(|[x, y]| at(x, y, 0.5)).to_vec();
+    let stipple = Some(LineStipple { factor: 2, pattern: 0x5555 });
+    for rule in [StrokeRule::Centres, StrokeRule::OpenGl] {
+        let state = State { stipple, strokes: rule, ..State::default() };
+        let columns = |indices: &[u32]| {
+            drawn(&points, indices, &state, true).into_iter().map(|p| p.0).collect::<Vec<_>>()
+        };
+        assert_eq!(columns(&[0, 1, 1, 2]), [0, 1, 4, 5, 8, 9]);
+        assert_eq!(columns(&[1, 2, 0, 1]), [0, 1, 4, 5, 6, 7, 10, 11]);
+    }
+}
+
+#[test]
+fn antialiased_lines_and_points_have_their_area() {
+    for (size, along) in [(1.0, 10.0), (2.5, 7.0), (0.5, 4.0)] {
+        let (dx, dy) = (along * 0.6, along * 0.8);
+        let points = [at(4.3, 3.1, 0.5), at(4.3 + dx, 3.1 + dy, 0.5)];
+        let state = State { antialias: true, line_width: size, point_size: size, ..State::default() };
+        for lines in [true, false] {
+            let mut sums = Vec::new();
+            for mut rasterizer in rasterizers() {
+                let mut buffers = Buffers::new(SIDE, SIDE);
+                let state = State { blend: Some(Blend::ADD), depth_test: Compare::Always, ..state };
+                let p = Primitives {
+                    positions: &points,
+                    varyings: &[],
+                    stride: 0,
+                    indices: if lines { &[0, 1] } else { &[0] },
+                    ids: Ids::Same(1),
+                };
+                let mut target = buffers.target().unwrap();
+                let shading = Shading::constant([1.0; 4]);
+                if lines {
+                    rasterizer.draw_lines(&mut target, &p, &state, &shading);
+                } else {
+                    rasterizer.draw_points(&mut target, &p, &state, &shading);
+                }
+                sums.push(buffers.color.pixels().iter().map(|p| p[3]).sum::<f32>());
+            }
+            let area = if lines { size * along } else { std::f32::consts::PI * size * size / 4.0 };
+            assert!(sums[0] == sums[1] && (sums[0] - area).abs() < 0.02, "{sums:?} {area}");
+        }
+    }
+}
+
+#[test]
+fn antialiased_neighbours_add_up_to_one() {
+    let points = [[2.3, 1.7], [13.1, 3.2], [12.2, 14.4], [1.1, 12.9]].map(|[x, y]| at(x, y, 0.5));
+    let p = Primitives {
+        positions: &points,
+        varyings: &[],
+        stride: 0,
+        indices: &[0, 1, 2, 0, 2, 3],
+        ids: Ids::Same(1),
+    };
+    for mut rasterizer in rasterizers() {
+        let mut buffers = Buffers::new(SIDE, SIDE);
+        let state = State {
+            antialias: true,
+            blend: Some(Blend::ADD),
+            depth_test: Compare::Always,
+            ..State::default()
+        };
+        rasterizer.draw(&mut buffers.target().unwrap(), &p, &state, &Shading::constant([1.0; 4]));
+        assert!((buffers.color.pixel(7, 7)[3] - 1.0).abs() < 1e-5);
+        let most = buffers.color.pixels().iter().map(|p| p[3]).fold(0.0, f32::max);
+        assert!(most < 1.000_01);
     }
 }
