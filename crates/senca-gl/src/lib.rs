@@ -36,6 +36,7 @@ mod debug;
 mod error;
 mod eval;
 mod framebuffer;
+mod get;
 #[path = "tokens.rs"]
 pub mod gl;
 mod immediate;
@@ -62,6 +63,7 @@ pub use context::{Config, Context};
 pub use debug::{DebugCallback, DebugMessage};
 pub use error::Error;
 pub use eval::map_components;
+pub use get::{EXTENSIONS, Values};
 pub use list::list_name_bytes;
 
 #[cfg(test)]
