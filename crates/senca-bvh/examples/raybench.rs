@@ -4,8 +4,8 @@
 //! cargo run --release -p senca-bvh --example raybench -- FILE.rayb [--reps 9] [--threads 2] [--level baseline]
 //! ```
 //!
-//! `--threads 0` prints one line for one thread, from the best time of each 4096 rays, which other work on
-//! the machine disturbs less.
+//! `--best 256` prints one line from the best time of each 256 rays, on as many threads at once as there are,
+//! which other work on the machine disturbs less.
 //!
 //! The file holds, little-endian: "RAYB", u32 version 1, u32 points, u32 triangles, f32 points, u32 indices,
 //! u32 sets, and per set a name of 16 bytes, u32 rays, and rays of f32 origin[3], direction[3], t_min,
@@ -100,7 +100,8 @@ fn main() -> Result<(), Failure> {
         }
     }
     let reps = options["--reps"].parse::<usize>()?.max(1);
-    let threads = options["--threads"].parse::<usize>()?;
+    let threads = options["--threads"].parse::<usize>()?.max(1);
+    let best_of = options.get("--best").map(|rays| rays.parse::<usize>()).transpose()?;
     let level = match options.get("--level").map(String::as_str) {
         Some("baseline") => SimdLevel::baseline(),
         #[cfg(target_arch = "x86_64")]
@@ -109,7 +110,7 @@ fn main() -> Result<(), Failure> {
     };
     for path in paths {
         let file = Reader(&std::fs::read(&path)?).file()?;
-        measure(&path, &file, &BuildSettings { level }, reps, threads)?;
+        measure(&path, &file, &BuildSettings { level }, reps, threads, best_of)?;
     }
     Ok(())
 }
@@ -120,6 +121,7 @@ fn measure(
     settings: &BuildSettings,
     reps: usize,
     threads: usize,
+    best_of: Option<usize>,
 ) -> Result<(), Failure> {
     let count = file.triangles.len();
     println!("# {path}: {count} triangles, {} points, {:?}", file.points.len(), settings.level);
@@ -127,8 +129,8 @@ fn measure(
         .map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build())
         .collect::<Result<Vec<_>, _>>()?;
     let build = || TriangleBvh::build(&file.points, &file.triangles, settings);
-    if threads == 0 {
-        return undisturbed(file, build, reps);
+    if let Some(block) = best_of {
+        return undisturbed(file, build, reps, threads, block);
     }
     for pool in &pools {
         let seconds = times(if count > 500_000 { 3 } else { 2 * reps }, || drop(pool.install(build)));
@@ -158,34 +160,45 @@ fn undisturbed(
     file: &File,
     build: impl Fn() -> Result<TriangleBvh, senca_bvh::BuildError> + Send + Sync,
     reps: usize,
+    threads: usize,
+    block: usize,
 ) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let seconds = times(2 * reps, || drop(pool.install(&build)));
     let bvh = build()?;
-    print!(
-        "build {:.2} ms, {:.1} bytes |",
-        1e3 * seconds[0],
-        bvh.memory_bytes() as f64 / file.triangles.len() as f64
-    );
+    let bytes = bvh.memory_bytes() as f64 / file.triangles.len() as f64;
+    print!("threads {threads} build {:.2} ms, {bytes:.1} bytes |", 1e3 * seconds[0]);
     for set in &file.sets {
         for any in [false, true] {
-            let mut best = vec![f64::INFINITY; set.rays.len().div_ceil(4096)];
-            let mut hits = 0;
-            for _ in 0..reps {
-                for (best, rays) in best.iter_mut().zip(set.rays.chunks(4096)) {
-                    let start = Instant::now();
-                    hits += count(&bvh, rays, any);
-                    *best = best.min(start.elapsed().as_secs_f64());
-                }
-            }
-            std::hint::black_box(hits);
-            let rate = 1e-6 * set.rays.len() as f64 / best.iter().sum::<f64>();
-            print!(" {} {} {rate:.2}", set.name, if any { "any" } else { "cl" });
+            let share = set.rays.len().div_ceil(threads);
+            let rates = pool.broadcast(|thread| {
+                let rays = set.rays.chunks(share).nth(thread.index()).unwrap_or(&[]);
+                rays.len() as f64 / best_times(&bvh, rays, any, reps, block.max(1))
+            });
+            print!(
+                " {} {} {:.2}",
+                set.name,
+                if any { "any" } else { "closest" },
+                1e-6 * rates.iter().sum::<f64>()
+            );
         }
         print!(" |");
     }
     println!();
     Ok(())
+}
+
+/// The seconds all rays take, each block of them at its best.
+fn best_times(bvh: &TriangleBvh, rays: &[Expected], any: bool, reps: usize, block: usize) -> f64 {
+    let mut best = vec![f64::INFINITY; rays.len().div_ceil(block)];
+    for _ in 0..reps {
+        for (best, rays) in best.iter_mut().zip(rays.chunks(block)) {
+            let start = Instant::now();
+            std::hint::black_box(count(bvh, rays, any));
+            *best = best.min(start.elapsed().as_secs_f64());
+        }
+    }
+    best.iter().sum()
 }
 
 /// How many of the rays meet something.
@@ -225,7 +238,8 @@ fn compare(bvh: &TriangleBvh, set: &Set) {
 fn speed(bvh: &TriangleBvh, set: &Set, any: bool, pool: &rayon::ThreadPool, reps: usize) {
     let mut hits = 0;
     let pass = || {
-        hits = pool.install(|| set.rays.par_chunks(4096).map(|rays| count(bvh, rays, any)).sum());
+        hits = pool
+            .install(|| set.rays.par_chunks(4096).with_max_len(1).map(|rays| count(bvh, rays, any)).sum());
     };
     let seconds = times(reps, pass);
     let rate = |seconds: f64| 1e-6 * set.rays.len() as f64 / seconds;

@@ -11,6 +11,7 @@ mod split;
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
+use crate::memory::list_in_large_pages;
 use crate::node::{Child, Node, WIDTH};
 use crate::traverse::MAX_DEPTH;
 pub(crate) use item::{Extent, Item};
@@ -47,7 +48,8 @@ pub(crate) fn build(mut items: Vec<Item>, max_leaf: usize, level: Level) -> Tree
         return Tree::default();
     }
     let builder = Builder { max_leaf, level };
-    let mut scratch = items.clone();
+    let mut scratch = list_in_large_pages(items.len());
+    scratch.par_extend(items.par_iter().with_min_len(1 << 12));
     let set = dispatch!(level, simd => Set::of(simd, &items, 0));
     let arena = builder.grow_parallel(&mut items, &mut scratch, set, 0);
     drop(scratch);

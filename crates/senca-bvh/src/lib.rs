@@ -24,6 +24,7 @@ mod box_bvh;
 mod brute;
 mod build;
 mod error;
+mod memory;
 mod node;
 mod order;
 mod prepared;

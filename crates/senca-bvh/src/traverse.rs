@@ -2,6 +2,7 @@
 
 use fearless_simd::{Simd, f32x8, prelude::*};
 
+use crate::memory::prefetch;
 use crate::node::{Child, Node, WIDTH};
 use crate::order::{ORDERS, octant};
 use crate::prepared::{PreparedRay, Products};
@@ -20,8 +21,15 @@ pub(crate) trait Visitor {
     /// matter.
     const ANY: bool;
 
+    /// Whether the hierarchy is so large that asking for children before they are tested pays.
+    const IS_LARGE: bool = false;
+
     /// Tests the items of a leaf; may lower `t_max`. True ends the walk.
     fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<S>, leaf: Child, t_max: &mut f32) -> bool;
+
+    /// A leaf may be tested soon.
+    #[inline(always)]
+    fn prefetch(&self, _: Child) {}
 
     /// A node is about to be tested.
     #[inline(always)]
@@ -192,6 +200,9 @@ fn step_by_step<S: Simd, V: Visitor, const PRODUCTS: bool, const DISTANCES: bool
                 let others = mask & !(1 << next);
                 let (entries, children) = orders[others as usize % 256].arrange(simd, enter, &node.children);
                 stack.push(entries, children, others.count_ones() as usize);
+                if V::IS_LARGE && others != 0 {
+                    prefetch_child(nodes, visitor, Child(children[others.count_ones() as usize % WIDTH - 1]));
+                }
                 current = Child(node.children[next]);
                 continue;
             }
@@ -200,6 +211,16 @@ fn step_by_step<S: Simd, V: Visitor, const PRODUCTS: bool, const DISTANCES: bool
             Some(child) => current = Child(child),
             None => return,
         }
+    }
+}
+
+/// Asks for the child that is next of those that wait, so that its memory is on its way meanwhile.
+#[inline(always)]
+fn prefetch_child<V: Visitor>(nodes: &[Node], visitor: &V, child: Child) {
+    if child.is_leaf() {
+        visitor.prefetch(child);
+    } else {
+        prefetch(nodes, child.node_index());
     }
 }
 

@@ -6,11 +6,15 @@ use senca_math::glam::Vec3;
 
 use crate::block::{Block, LANES};
 use crate::build::{Item, build};
+use crate::memory::{list_in_large_pages, prefetch};
 use crate::node::{Child, Node};
 use crate::prepared::PreparedRay;
 use crate::traverse::{LaneRay, Visitor, walk};
 use crate::watertight::intersect;
 use crate::{Aabb32, BuildError, Ray32, TraversalCounts, TriangleHit};
+
+/// Blocks of which a hierarchy has more than fits into the caches near a core: with its nodes, about 16 MiB.
+const LARGE: usize = 1 << 15;
 
 /// How a hierarchy is built. None of it changes an answer.
 ///
@@ -60,24 +64,20 @@ impl TriangleBvh {
         }
         let tree = build(items(points, triangles)?, LANES, settings.level);
         let corners = |triangle: u32| triangles[triangle as usize].map(|index| points[index as usize]);
-        let blocks: Vec<Block> = tree
-            .leaves
-            .par_iter()
-            .with_min_len(1024)
-            .map(|&(start, count)| {
-                let mut block = Block::EMPTY;
-                let items = &tree.items[start as usize..][..count as usize];
-                for (lane, &triangle) in items.iter().enumerate() {
-                    block.set(lane, triangle, corners(triangle));
-                }
-                block
-            })
-            .collect();
-        let mut nodes = tree.nodes;
-        nodes.par_iter_mut().with_min_len(1024).for_each(|node| {
-            node.walls =
-                node.leaf_slots(|leaf| blocks[leaf.leaf_index()].is_wall(leaf.leaf_count() as usize));
-        });
+        let block = |&(start, count): &(u32, u32)| {
+            let mut block = Block::EMPTY;
+            let items = &tree.items[start as usize..][..count as usize];
+            for (lane, &triangle) in items.iter().enumerate() {
+                block.set(lane, triangle, corners(triangle));
+            }
+            block
+        };
+        let mut blocks = list_in_large_pages(tree.leaves.len());
+        blocks.par_extend(tree.leaves.par_iter().with_min_len(1024).map(block));
+        let is_wall = |leaf: Child| blocks[leaf.leaf_index()].is_wall(leaf.leaf_count() as usize);
+        let node = |node: &Node| Node { walls: node.leaf_slots(is_wall), ..node.clone() };
+        let mut nodes = list_in_large_pages(tree.nodes.len());
+        nodes.par_extend(tree.nodes.par_iter().with_min_len(1024).map(node));
         Ok(Self { nodes, blocks, bounds: tree.extent.as_box(), level: settings.level })
     }
 
@@ -219,16 +219,28 @@ impl TriangleBvh {
         accept: A,
         count: C,
     ) -> Option<TriangleHit> {
-        let mut search = Search { blocks: &self.blocks, found: Closest { best: None, accept }, count };
-        self.walk(ray, &mut search);
-        search.found.best
+        self.search(ray, Closest { best: None, accept }, count).best
     }
 
     /// Whether a ray whose t is nowhere negative meets anything.
     fn any_ahead<A: FnMut(&TriangleHit) -> bool, C: Count>(&self, ray: &Ray32, accept: A, count: C) -> bool {
-        let mut search = Search { blocks: &self.blocks, found: Any { found: false, accept }, count };
+        self.search(ray, Any { found: false, accept }, count).found
+    }
+
+    #[inline(always)]
+    fn search<F: Found, C: Count>(&self, ray: &Ray32, found: F, count: C) -> F {
+        if self.blocks.len() > LARGE {
+            self.search_in::<F, C, true>(ray, found, count)
+        } else {
+            self.search_in::<F, C, false>(ray, found, count)
+        }
+    }
+
+    #[inline(always)]
+    fn search_in<F: Found, C: Count, const IS_LARGE: bool>(&self, ray: &Ray32, found: F, count: C) -> F {
+        let mut search = Search::<F, C, IS_LARGE> { blocks: &self.blocks, found, count };
         self.walk(ray, &mut search);
-        search.found.found
+        search.found
     }
 
     #[inline]
@@ -262,8 +274,8 @@ impl Count for &mut TraversalCounts {
     }
 }
 
-/// Looks for hits in leaves.
-struct Search<'a, F, C> {
+/// Looks for hits in leaves, of a large hierarchy or of one that fits into caches.
+struct Search<'a, F, C, const IS_LARGE: bool> {
     blocks: &'a [Block],
     found: F,
     count: C,
@@ -315,8 +327,9 @@ impl<A: FnMut(&TriangleHit) -> bool> Found for Any<A> {
     }
 }
 
-impl<F: Found, C: Count> Visitor for Search<'_, F, C> {
+impl<F: Found, C: Count, const IS_LARGE: bool> Visitor for Search<'_, F, C, IS_LARGE> {
     const ANY: bool = F::ANY;
+    const IS_LARGE: bool = IS_LARGE;
 
     #[inline(always)]
     fn leaf<S: Simd>(&mut self, simd: S, ray: &LaneRay<'_, S>, leaf: Child, t_max: &mut f32) -> bool {
@@ -350,12 +363,17 @@ impl<F: Found, C: Count> Visitor for Search<'_, F, C> {
     }
 
     #[inline(always)]
+    fn prefetch(&self, leaf: Child) {
+        prefetch(self.blocks, leaf.leaf_index());
+    }
+
+    #[inline(always)]
     fn node(&mut self) {
         self.count.add(1, 0);
     }
 }
 
-impl<F: Found, C> Search<'_, F, C> {
+impl<F: Found, C, const IS_LARGE: bool> Search<'_, F, C, IS_LARGE> {
     /// Tests some triangles of a block one by one. Whether that ends the search, and the new `t_max`.
     #[cold]
     #[inline(never)]
@@ -391,7 +409,9 @@ fn items(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Item>, BuildErro
     };
     let numbered = triangles.par_iter().enumerate().with_min_len(1 << 12);
     if triangles.par_iter().with_min_len(1 << 12).all(met) {
-        Ok(numbered.map(item).collect())
+        let mut items = list_in_large_pages(triangles.len());
+        items.par_extend(numbered.map(item));
+        Ok(items)
     } else {
         Ok(numbered.filter(|triangle| met(triangle.1)).map(item).collect())
     }
@@ -401,4 +421,33 @@ fn items(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Item>, BuildErro
 pub(crate) fn can_be_met([a, b, c]: [Vec3; 3]) -> bool {
     let normal = (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
     a.is_finite() && b.is_finite() && c.is_finite() && normal != senca_math::glam::DVec3::ZERO
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_asked_for_early_changes_no_answer() {
+        let point = |i: u32| Vec3::new((i % 31) as f32, (i / 31) as f32, ((i * i) % 7) as f32 * 0.3);
+        let points: Vec<Vec3> = (0..31 * 31).map(point).collect();
+        let squares = (0..30 * 30).map(|i| i / 30 * 31 + i % 30);
+        let triangles: Vec<[u32; 3]> =
+            squares.flat_map(|i| [[i, i + 1, i + 31], [i + 1, i + 32, i + 31]]).collect();
+        let bvh = TriangleBvh::build(&points, &triangles, &BuildSettings::default()).unwrap();
+        let mut hits = 0;
+        for i in 0..500 {
+            let from =
+                Vec3::new((i % 17) as f32 * 2.0 - 2.0, (i % 13) as f32 * 3.0 - 4.0, 3.0 - (i % 5) as f32);
+            let ray = Ray32::new(from, point(2 * i % 961) + Vec3::splat(0.2) - from);
+            let closest = || Closest { best: None, accept: |_: &TriangleHit| true };
+            let plain = bvh.search_in::<_, _, false>(&ray, closest(), Uncounted).best;
+            assert_eq!(bvh.search_in::<_, _, true>(&ray, closest(), Uncounted).best, plain);
+            let any = || Any { found: false, accept: |_: &TriangleHit| true };
+            assert_eq!(bvh.search_in::<_, _, true>(&ray, any(), Uncounted).found, plain.is_some());
+            assert_eq!(bvh.search_in::<_, _, false>(&ray, any(), Uncounted).found, plain.is_some());
+            hits += usize::from(plain.is_some());
+        }
+        assert!((100..500).contains(&hits), "{hits}");
+    }
 }
