@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut best, mut solved) = (f64::INFINITY, Solved::default());
     for _ in 0..repeat.max(1) {
         let start = Instant::now();
-        solved = pool.install(|| solve(&scene, &settings, &Control::default()))?;
+        solved = pool.install(|| solve(&scene, &settings, &Control::default(), |_| ()))?;
         best = best.min(start.elapsed().as_secs_f64());
     }
     println!("{best:.3} s on {} threads", pool.current_num_threads());

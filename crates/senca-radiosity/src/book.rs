@@ -29,6 +29,7 @@ mod factors;
 mod refine;
 mod rows;
 mod settings;
+mod shoot;
 
 #[cfg(test)]
 mod cornell_tests;
@@ -41,7 +42,7 @@ use senca_scene::{Scene, Warning};
 use crate::system::{FactorMatrix, GaussSeidel, Outcome, Rgb64, System};
 use crate::{DirectLight, ElementMesh, NONE, Occluders, RadiosityError, Solution, SolveReport};
 
-pub use settings::{BookSettings, FactorMethod};
+pub use settings::{BookSettings, FactorMethod, Relaxation, ShootingRule};
 
 use factors::Factors;
 use rows::Rows;
@@ -76,7 +77,8 @@ pub struct BookReport {
     pub lost: f64,
 }
 
-/// Computes the light of `scene`, which is in its pose and valid.
+/// Computes the light of `scene`, which is in its pose and valid. `watch` sees the solution after every
+/// round, and of shooting after 1, 2, 4, 8 and so on steps.
 ///
 /// Cancelling ends with an error only before there is any light; later the best so far is returned,
 /// with [`SolveReport::converged`] false and a warning.
@@ -88,6 +90,7 @@ pub fn solve(
     scene: &Scene,
     settings: &BookSettings,
     control: &Control<'_>,
+    watch: impl FnMut(&Solution),
 ) -> Result<Solved, RadiosityError> {
     settings.check()?;
     let mut mesh_settings = settings.mesh;
@@ -96,13 +99,13 @@ pub fn solve(
     }
     let (mesh, mut warnings) = ElementMesh::of_scene_with_warnings(scene, &mesh_settings)?;
     let light = DirectLight::of_scene(scene, &settings.direct)?;
-    let mut solved = solve_mesh(mesh, &light, settings, control, |_| ())?;
+    let mut solved = solve_mesh(mesh, &light, settings, control, watch)?;
     warnings.append(&mut solved.warnings);
     Ok(Solved { warnings, ..solved })
 }
 
 /// Computes the light on `mesh`, whose leaves are the patches, lit by what the mesh gives off and by
-/// `light`. `watch` sees the solution after every round.
+/// `light`. `watch` sees solutions as in [`solve`].
 ///
 /// # Errors
 /// As [`solve`].
@@ -116,7 +119,11 @@ pub fn solve_mesh(
     settings.check()?;
     let mut book = Book::new(mesh, light, settings)?;
     book.illuminate(control)?;
-    match book.rounds(control, &mut watch) {
+    let rounds = match settings.relaxation {
+        Relaxation::GaussSeidel => book.rounds(control, &mut watch),
+        Relaxation::Shooting(rule) => book.rounds_by_shooting(rule, control, &mut watch),
+    };
+    match rounds {
         Err(RadiosityError::Cancelled) => {
             book.warnings.push(Warning("interrupted: the light is the best so far".to_owned()));
             book.outcome.converged = false;
@@ -145,6 +152,8 @@ struct Book<'a> {
     radiosity: Vec<Rgb64>,
     outcome: Outcome,
     balance: f64,
+    /// Power that shooting has not sent, as a share of all.
+    unsent: f64,
     report: BookReport,
     warnings: Vec<Warning>,
     solution: Solution,
@@ -171,24 +180,14 @@ impl<'a> Book<'a> {
             radiosity: Vec::new(),
             outcome: Outcome::default(),
             balance: 0.0,
+            unsent: 0.0,
             report: BookReport::default(),
             warnings: Vec::new(),
             solution: Solution::default(),
         };
-        book.hold_reflectance();
+        book.warnings.extend(book.mesh.hold_reflectance(settings.largest_reflectance));
         book.number_patches();
         Ok(book)
-    }
-
-    /// Paint that returns all light, or more, has no solution in a closed room.
-    fn hold_reflectance(&mut self) {
-        let held = self.mesh.limit_reflectance(self.settings.largest_reflectance);
-        if held > 0 {
-            let limit = self.settings.largest_reflectance;
-            self.warnings.push(Warning(format!(
-                "{held} surfaces reflect more than {limit} of the light: taken as {limit}"
-            )));
-        }
     }
 
     /// Leaves become patches.
@@ -311,17 +310,26 @@ impl<'a> Book<'a> {
 
     /// Step 5: values of the elements from those of the patches.
     fn on_elements(&self) -> Solution {
-        let emission: Vec<Rgb64> =
-            self.patches.iter().map(|&p| self.mesh.surface(p).emission.to_array().map(f64::from)).collect();
-        let exchanged = self.factors.on_leaves(&self.mesh, &self.patch_of, &self.rows, &self.radiosity);
-        let emitted = self.factors.on_leaves(&self.mesh, &self.patch_of, &self.rows, &emission);
-        let with_lamps = |values: Vec<LinearRgb>| -> Vec<LinearRgb> {
+        let matrix = &self.factors.matrix;
+        self.solution_of(&matrix.gather_all(&self.radiosity), &matrix.gather_all(&self.emission()))
+    }
+
+    /// Own light of the patches.
+    fn emission(&self) -> Vec<Rgb64> {
+        self.patches.iter().map(|&p| self.mesh.surface(p).emission.to_array().map(f64::from)).collect()
+    }
+
+    /// Light on the elements from what arrives at the patches, and the part of it that comes straight
+    /// from emitters.
+    fn solution_of(&self, incident: &[Rgb64], direct: &[Rgb64]) -> Solution {
+        let on_leaves = |radiosity: &[Rgb64], incident: &[Rgb64]| -> Vec<LinearRgb> {
+            let values = self.factors.on_leaves(&self.mesh, &self.patch_of, &self.rows, radiosity, incident);
             values.iter().zip(&self.lamps).map(|(value, lamps)| *value + *lamps).collect()
         };
         let mut solution = Solution {
             mesh: self.mesh.clone(),
-            incident: with_lamps(exchanged),
-            direct: with_lamps(emitted),
+            incident: on_leaves(&self.radiosity, incident),
+            direct: on_leaves(&self.emission(), direct),
             report: self.solve_report(),
         };
         solution.pull();
@@ -338,6 +346,7 @@ impl<'a> Book<'a> {
             residual: self.outcome.change,
             energy_error: self.balance,
             converged: self.outcome.converged,
+            unsent: self.unsent,
         }
     }
 
@@ -366,7 +375,8 @@ impl<'a> Book<'a> {
 
     fn finish(mut self) -> Solved {
         let outcome = self.outcome;
-        if !outcome.converged && outcome.sweeps >= self.settings.stop.max_sweeps {
+        let gathering = self.settings.relaxation == Relaxation::GaussSeidel;
+        if gathering && !outcome.converged && outcome.sweeps >= self.settings.stop.max_sweeps {
             self.warnings.push(Warning(format!(
                 "not converged: the last of {} sweeps still changed the light by {:.1e} of its maximum",
                 outcome.sweeps, outcome.change

@@ -23,6 +23,7 @@ use std::collections::HashMap;
 
 use senca_math::glam::DVec3;
 use senca_math::{Aabb, LinearRgb};
+use senca_scene::Warning;
 
 use crate::PatchPolygon;
 
@@ -195,6 +196,13 @@ impl ElementMesh {
             std::mem::replace(&mut surface.reflectance, new) != new
         };
         self.surfaces.iter_mut().map(change).filter(|changed| *changed).count()
+    }
+
+    /// [`ElementMesh::limit_reflectance`], and what to tell of it.
+    pub fn hold_reflectance(&mut self, limit: f32) -> Option<Warning> {
+        let held = self.limit_reflectance(limit);
+        let what = if held == 1 { "surface reflects" } else { "surfaces reflect" };
+        (held > 0).then(|| Warning(format!("{held} {what} more than {limit} of the light: taken as {limit}")))
     }
 
     /// Box around the polygons.

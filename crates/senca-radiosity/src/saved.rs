@@ -3,10 +3,10 @@
 //! | bytes | content |
 //! |---|---|
 //! | 8 | `SENCALIT` |
-//! | 4 | version, 1 |
+//! | 4 | version, 2 |
 //! | 8 | fingerprint of the scene, see [`light_fingerprint`] |
 //! | 4 x 6 | numbers of vertices, surfaces, polygons, polygons with attributes, divided elements, elements |
-//! | 8 x 4, 4, 8 x 2, 1 | report: polygons, patches, elements, links; iterations; residual, energy error; converged |
+//! | 8 x 4, 4, 8 x 3, 1 | report: polygons, patches, elements, links; iterations; residual, energy error, unsent; converged |
 //! | 48 per vertex | place and normal |
 //! | 45 per surface | instance, material, back, reflectance, emission, transmittance |
 //! | 20 per polygon | vertices, surface |
@@ -32,7 +32,7 @@ use bytes::{Reader, Writer, checksum};
 pub use fingerprint::light_fingerprint;
 
 const MAGIC: &[u8; 8] = b"SENCALIT";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const CHECKSUM: usize = 8;
 const VERTEX: usize = 48;
 const SURFACE: usize = 45;
@@ -46,7 +46,7 @@ pub enum SavedSolutionError {
     /// The bytes are something else.
     #[error("is not a solution saved by this program")]
     NotASolution,
-    /// A later version of the program wrote them.
+    /// Another version of the program wrote them.
     #[error("is a solution of version {0}; this program reads version {VERSION}")]
     Version(u32),
     /// Bytes are missing or changed.
@@ -205,6 +205,7 @@ fn write_report(out: &mut Writer, report: &SolveReport) {
     out.u32(report.iterations);
     out.f64(report.residual);
     out.f64(report.energy_error);
+    out.f64(report.unsent);
     out.bytes(&[u8::from(report.converged)]);
 }
 
@@ -217,6 +218,7 @@ fn read_report(reader: &mut Reader<'_>) -> Option<SolveReport> {
         iterations: reader.u32()?,
         residual: reader.f64()?,
         energy_error: reader.f64()?,
+        unsent: reader.f64()?,
         converged: reader.flag()?,
     })
 }

@@ -15,7 +15,7 @@ pub struct SolveReport {
     pub elements: u64,
     /// Form factors or links between elements that the solution rests on.
     pub links: u64,
-    /// Rounds of the solver.
+    /// Rounds of the solver, or steps of shooting.
     pub iterations: u32,
     /// The largest change of a radiosity in the last round, as a share of the largest radiosity.
     pub residual: f64,
@@ -24,6 +24,9 @@ pub struct SolveReport {
     pub energy_error: f64,
     /// Whether the solver met its tolerance.
     pub converged: bool,
+    /// Power that was reflected or given off and not sent on yet, as a share of all that is given off
+    /// and reflected from lamps; 0 for solvers that do not shoot.
+    pub unsent: f64,
 }
 
 /// Light on the elements of a mesh: the result of every solver, seen from nowhere in particular.

@@ -3,8 +3,9 @@
 mod common;
 
 use std::path::Path;
+use std::process::{Command, Stdio};
 
-use common::{run_in, sample, told};
+use common::{run_in, sample, senca_in, told};
 use senca::io::Limits;
 use senca::io::images::decode_picture;
 
@@ -147,4 +148,66 @@ fn the_sample_of_the_cornell_box_can_be_shown_by_radiosity() {
         cornell.display()
     );
     succeeds(folder.path(), &command);
+}
+
+#[test]
+fn shooting_tells_what_is_unsent_and_shows_early_pictures() {
+    let folder = folder();
+    let folder = folder.path();
+    let render = "render room.toml --method radiosity --solver shooting --patch-size 1.5 --size 16x16";
+    let stats = |name: &str| -> serde_json::Value {
+        let text = std::fs::read_to_string(folder.join(name)).expect("figures");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    succeeds(folder, &format!("{render} -o a.pfm --preview 0.001s --stats a.json"));
+    let all = stats("a.json");
+    assert_eq!(all["converged"], true, "{all}");
+    assert!(all["unsent"].as_f64().is_some_and(|left| left > 0.0 && left <= 1e-4), "{all}");
+    let early = run(folder, &format!("{render} --steps 3 -o b.pfm --stats b.json"));
+    assert!(early.status.success() && told(&early).contains("after 3 steps"), "{}", told(&early));
+    let few = stats("b.json");
+    assert!(few["iterations"] == 3 && few["converged"] == false, "{few}");
+    assert!(few["unsent"].as_f64().is_some_and(|left| left > 0.1), "{few}");
+    let mean = |name: &str| {
+        let bytes = std::fs::read(folder.join(name)).expect("a picture");
+        let picture = decode_picture(name, &bytes, &Limits::default()).expect("a picture");
+        picture.pixels().iter().map(|pixel| pixel[1]).sum::<f32>()
+    };
+    let ratio = mean("b.pfm") / mean("a.pfm");
+    assert!((ratio - 1.0).abs() < 0.2, "the estimate is near: {ratio}");
+    succeeds(folder, "lux room.toml --solver shooting --patch-size 1.5 --spacing 3 --time-limit 60s");
+    let usage = run(folder, "render room.toml --method radiosity --steps 3");
+    assert!(usage.status.code() == Some(2) && told(&usage).contains("--solver shooting"), "{}", told(&usage));
+    let usage = run(folder, &format!("{render} --preview 1s -o - --format png"));
+    assert_eq!(usage.status.code(), Some(2));
+}
+
+/// Ctrl-C keeps the light as far as it has come where it was asked for, by every solver.
+#[cfg(unix)]
+#[test]
+fn interrupted_light_can_be_shown() {
+    let folder = folder();
+    let folder = folder.path();
+    for solver in
+        ["hierarchical --link-error 1e-9", "gauss-seidel --patch-size 0.25", "shooting --patch-size 0.05"]
+    {
+        let command = format!(
+            "render room.toml --method radiosity --solver {solver} --size 8x8 -o a.png --save-solution room.light"
+        );
+        let arguments: Vec<&str> = command.split_whitespace().collect();
+        let child = senca_in(folder, &arguments).stderr(Stdio::piped()).spawn().expect("the command starts");
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(killed.expect("kill runs").success(), "{solver}: the light was computed too soon");
+        let done = child.wait_with_output().expect("the command ends");
+        assert_eq!(done.status.code(), Some(130), "{solver}: {}", told(&done));
+        let shown =
+            run(folder, "render room.toml --method radiosity --size 8x8 -o b.png --solution room.light");
+        assert!(
+            shown.status.success() && told(&shown).contains("not as exact"),
+            "{solver}: {}",
+            told(&shown)
+        );
+        std::fs::remove_file(folder.join("room.light")).expect("saved");
+    }
 }

@@ -83,7 +83,7 @@ fn the_box_looks_as_light_itself_would_have_it() {
         stop: StopRule { tolerance: 1e-4, ..StopRule::default() },
         ..BookSettings::default()
     };
-    let solved = solve(&scene, &settings, &Control::default()).expect("solved");
+    let solved = solve(&scene, &settings, &Control::default(), |_| ()).expect("solved");
     assert!(solved.warnings.is_empty(), "{:?}", solved.warnings);
     assert!(solved.solution.report.converged && solved.solution.report.energy_error < 1e-3);
     let seen = pictures(&scene, &view, &solved);

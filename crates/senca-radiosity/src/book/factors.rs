@@ -24,7 +24,7 @@ pub(super) struct Factors {
     pub(super) matrix: FactorMatrix,
     pub(super) largest_row_sum: f64,
     /// What the exchange of elements of row i with patch j is to be multiplied by, by row, for the
-    /// entries that elements have.
+    /// entries that elements have. Empty where it is 1 for all.
     scales: Vec<Vec<(u32, f64)>>,
 }
 
@@ -63,17 +63,17 @@ impl Factors {
     }
 
     /// What arrives at each leaf from patches of these radiosities (section 4.3: the rows of the
-    /// elements, all else known); the mean over a patch is what arrives there. Black for elements that
-    /// are divided.
+    /// elements, all else known), with `incident`, which is what arrives at the patches, as the mean over
+    /// each. Black for elements that are divided.
     pub(super) fn on_leaves(
         &self,
         mesh: &ElementMesh,
         patch_of: &[u32],
         rows: &Rows,
         radiosity: &[Rgb64],
+        incident: &[Rgb64],
     ) -> Vec<LinearRgb> {
         let leaves = leaves_of(mesh, radiosity.len(), patch_of);
-        let incident = self.matrix.gather_all(radiosity);
         let mut values = vec![LinearRgb::BLACK; mesh.elements().len()];
         let of_patch = |(i, leaves): (usize, &Vec<u32>)| -> Vec<(u32, Rgb64)> {
             let own = |&leaf: &u32| (leaf, self.gathered(i, rows.of(leaf), radiosity));
@@ -98,11 +98,17 @@ impl Factors {
 
     /// Power that arrives at an element of patch `i` with this row.
     fn gathered(&self, i: usize, row: &[(u32, f32)], radiosity: &[Rgb64]) -> Rgb64 {
-        let mut scales = self.scales[i].iter();
+        let mut scales = self.scales.get(i).map(|scales| scales.iter());
         let mut power = [0.0; 3];
         for &(j, exchange) in row {
             // Both ascend, and each column of an element is one of its patch's.
-            let Some(&(_, scale)) = scales.find(|(column, _)| *column == j) else { break };
+            let scale = match &mut scales {
+                None => 1.0,
+                Some(scales) => match scales.find(|(column, _)| *column == j) {
+                    Some(&(_, scale)) => scale,
+                    None => break,
+                },
+            };
             let received = f64::from(exchange) * scale;
             (0..3).for_each(|c| power[c] += received * radiosity[j as usize][c]);
         }
@@ -155,7 +161,7 @@ fn symmetric(sums: &[Vec<(u32, f64)>], weights: &[f64]) -> Vec<Vec<(u32, f64)>> 
 }
 
 /// Whether rays from all over a patch meet the fronts of opaque polygons in every direction.
-fn is_surrounded(mesh: &ElementMesh, occluders: &Occluders, patch: u32) -> bool {
+pub(super) fn is_surrounded(mesh: &ElementMesh, occluders: &Occluders, patch: u32) -> bool {
     let (shape, normal) = (mesh.shape(patch), mesh.normal(patch));
     let (x, y) = normal.any_orthonormal_pair();
     (0..RAYS).all(|ray| {

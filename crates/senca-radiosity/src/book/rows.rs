@@ -20,10 +20,10 @@ const DIGITS: f64 = 9.2;
 
 /// Exchange from elements to patches, by element; empty for those that are divided.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rows(Vec<Row>);
+pub(super) struct Rows(pub(super) Vec<Row>);
 
 /// Patches with the exchange, ascending.
-type Row = Vec<(u32, f32)>;
+pub(super) type Row = Vec<(u32, f32)>;
 
 impl Rows {
     pub(super) fn clear(&mut self, elements: usize) {
@@ -88,7 +88,11 @@ impl Book<'_> {
     }
 
     /// Exchange of some elements with all patches but their own.
-    fn rows_of(&self, elements: &[u32], control: &Control<'_>) -> Result<Vec<Row>, RadiosityError> {
+    pub(super) fn rows_of(
+        &self,
+        elements: &[u32],
+        control: &Control<'_>,
+    ) -> Result<Vec<Row>, RadiosityError> {
         match self.settings.factors {
             FactorMethod::RayCast { rays } => {
                 let row = |&element: &u32| {

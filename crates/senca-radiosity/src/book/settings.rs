@@ -36,6 +36,33 @@ impl Default for FactorMethod {
     }
 }
 
+/// How the equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Relaxation {
+    /// All patches gather in turn, from factors that are all computed before.
+    #[default]
+    GaussSeidel,
+    /// The patch with most unsent light sends it to all others, again and again (progressive refinement).
+    Shooting(ShootingRule),
+}
+
+/// When shooting ends, and what it shows by then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShootingRule {
+    /// Unsent power that is left, as a share of all, in (0, 1). Default 1e-4.
+    pub unsent: f64,
+    /// Steps at most; then elements are not divided. Default `u32::MAX`.
+    pub max_steps: u32,
+    /// Whether light on its way is shown as if it were everywhere alike. Default true.
+    pub ambient: bool,
+}
+
+impl Default for ShootingRule {
+    fn default() -> Self {
+        Self { unsent: 1e-4, max_steps: u32::MAX, ambient: true }
+    }
+}
+
 /// How light is computed by the method of the book.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BookSettings {
@@ -57,7 +84,9 @@ pub struct BookSettings {
     pub smallest: f64,
     /// Reflectances are held to this, in (0, 1). Default 0.99: no paint returns more.
     pub largest_reflectance: f32,
-    /// When the solver stops.
+    /// How the equations are solved.
+    pub relaxation: Relaxation,
+    /// When [`Relaxation::GaussSeidel`] stops.
     pub stop: StopRule,
     /// Form factors from elements at most; each takes 8 bytes. Default 2^27.
     pub max_factors: u64,
@@ -75,6 +104,7 @@ impl Default for BookSettings {
             depth: 3,
             smallest: 0.0,
             largest_reflectance: 0.99,
+            relaxation: Relaxation::default(),
             stop: StopRule::default(),
             max_factors: 1 << 27,
         }
@@ -99,6 +129,10 @@ impl BookSettings {
         if !fits {
             return Err(RadiosityError::Setting { name, value: value.into(), expected });
         }
+        let unsent = match self.relaxation {
+            Relaxation::Shooting(rule) => rule.unsent,
+            Relaxation::GaussSeidel => ShootingRule::default().unsent,
+        };
         let reflectance = f64::from(self.largest_reflectance);
         let above_0 = |value: f64| value > 0.0 && value.is_finite();
         for (name, value, fits, expected) in [
@@ -116,6 +150,7 @@ impl BookSettings {
                 reflectance > 0.0 && reflectance < 1.0,
                 "above 0 and below 1",
             ),
+            ("unsent power", unsent, unsent > 0.0 && unsent < 1.0, "above 0 and below 1"),
             ("tolerance", self.stop.tolerance, above_0(self.stop.tolerance), "above 0 and finite"),
         ] {
             if !fits {

@@ -132,7 +132,7 @@ fn the_inside_of_a_ball_is_a_furnace() {
     scene.geometries[0].material = Some(id);
     let mesh = MeshSettings { tolerance: Some(0.1), patch_size: Some(2.0), ..MeshSettings::default() };
     let settings = BookSettings { mesh, rounds: 0, ..BookSettings::default() };
-    let solved = solve(&scene, &settings, &Control::default()).expect("solved");
+    let solved = solve(&scene, &settings, &Control::default(), |_| ()).expect("solved");
     let solution = &solved.solution;
     let mut seen = 0;
     for leaf in solution.mesh.leaves().filter(|&leaf| solution.mesh.surface(leaf).back) {
@@ -259,7 +259,8 @@ fn lamp_over_table() -> Scene {
 
 #[test]
 fn lamps_of_the_scene_light_it() {
-    let solved = solve(&lamp_over_table(), &BookSettings::default(), &Control::default()).expect("solved");
+    let solved =
+        solve(&lamp_over_table(), &BookSettings::default(), &Control::default(), |_| ()).expect("solved");
     let solution = &solved.solution;
     let (mut most, mut below) = (0.0f32, 0.0f32);
     for leaf in solution.mesh.leaves() {
@@ -282,7 +283,7 @@ fn light_does_not_depend_on_the_view() {
         let camera = Some(senca_scene::CameraId(0));
         let node = scene.add_node(Node { camera, transform, ..Node::default() });
         scene.roots.push(node);
-        solve(&scene, &BookSettings::default(), &Control::default()).expect("solved")
+        solve(&scene, &BookSettings::default(), &Control::default(), |_| ()).expect("solved")
     };
     assert_eq!(solved(DVec3::ONE), solved(DVec3::new(-7.0, 2.0, 0.5)));
 }
@@ -324,7 +325,7 @@ fn reflectance_that_no_paint_has_is_held() {
 #[test]
 fn odd_input_has_an_answer() {
     let settings = BookSettings::default();
-    let nothing = solve(&Scene::default(), &settings, &Control::default()).expect("solved");
+    let nothing = solve(&Scene::default(), &settings, &Control::default(), |_| ()).expect("solved");
     assert_eq!(nothing.solution.mesh.elements().len(), 0);
     // A lamp that faces away from all, and a face without area.
     let mut away = faces([0.0; 3], [1.0; 3], false);
@@ -351,6 +352,8 @@ fn settings_out_of_range_are_refused() {
         BookSettings { largest_reflectance: 1.0, ..d },
         BookSettings { factors: FactorMethod::RayCast { rays: 0 }, ..d },
     ] {
-        assert!(solve(&Scene::default(), &settings, &Control::default()).is_err(), "{settings:?}");
+        assert!(solve(&Scene::default(), &settings, &Control::default(), |_| ()).is_err(), "{settings:?}");
     }
 }
+
+mod shooting;

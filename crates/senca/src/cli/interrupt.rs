@@ -3,11 +3,14 @@
 //! The first Ctrl-C raises a flag that drawing and writing look at. Stages that cannot look (a
 //! parser, an encoder) are ended with the process after a moment of grace, as they have nothing on
 //! disk yet; only while a file is being written does the process wait for the writer, which
-//! removes its unfinished file and gives up.
+//! removes its unfinished file and gives up, and while something is computed that is to be kept as far
+//! as it has come. Then a second Ctrl-C ends it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
+
+use super::output::tell;
 
 /// How long drawing is given to stop by itself.
 const GRACE: Duration = Duration::from_millis(500);
@@ -20,6 +23,7 @@ const INTERRUPTED: i32 = 130;
 pub(crate) struct Interrupt {
     raised: Arc<AtomicBool>,
     writing: Arc<AtomicBool>,
+    keeping: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -37,7 +41,10 @@ impl Interrupt {
         if first {
             std::thread::sleep(GRACE);
         }
-        if !self.writing.load(Ordering::SeqCst) {
+        let kept = first && self.keeping.load(Ordering::SeqCst);
+        if kept {
+            tell("senca: saving what there is; Ctrl-C again ends without it");
+        } else if !self.writing.load(Ordering::SeqCst) {
             std::process::exit(INTERRUPTED);
         }
     }
@@ -50,6 +57,14 @@ impl Interrupt {
     /// The flag itself, for those who look at it while they work.
     pub(crate) fn flag(&self) -> &AtomicBool {
         &self.raised
+    }
+
+    /// Runs `work`, whose result is kept after Ctrl-C, too: it is asked to stop, and waited for.
+    pub(crate) fn while_keeping<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.keeping.store(true, Ordering::SeqCst);
+        let result = work();
+        self.keeping.store(false, Ordering::SeqCst);
+        result
     }
 
     /// Runs `write`, during which the process is not ended from outside.

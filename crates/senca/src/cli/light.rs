@@ -7,12 +7,14 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum, ValueHint};
 use senca::pipeline::Control;
 use senca::radiosity::book::FactorMethod;
-use senca::radiosity::{HierarchySettings, MeshSettings, Solution};
+use senca::radiosity::{HierarchySettings, MeshSettings, Solution, SolveReport};
+use senca::scene::Warning;
 use senca::{
-    ComputedLight, Error, RadiositySettings, Scene, Settings, Solver, compute_light, scene_light_fingerprint,
+    ComputedLight, Error, OnRound, RadiositySettings, Scene, Settings, Solver, compute_light,
+    scene_light_fingerprint,
 };
 
-use super::output::{check_writable, is_standard};
+use super::output::{check_writable, is_standard, tell};
 use super::values::{positive, share};
 use super::{Failure, Interrupt};
 
@@ -25,7 +27,7 @@ pub(crate) struct LightArguments {
     pub(crate) solver: Option<SolverChoice>,
 
     /// Longest edge of a patch to begin with, in world units [default: polygons are left whole, and
-    /// divided where light asks for it; for gauss-seidel 1/12 of the scene]
+    /// divided where light asks for it; for gauss-seidel and shooting 1/12 of the scene]
     #[arg(long, value_name = "LENGTH", value_parser = positive)]
     pub(crate) patch_size: Option<f64>,
 
@@ -37,9 +39,13 @@ pub(crate) struct LightArguments {
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) link_error: Option<f64>,
 
-    /// How gauss-seidel finds form factors [default: ray-cast]
+    /// How gauss-seidel and shooting find form factors [default: ray-cast]
     #[arg(long, value_enum, value_name = "METHOD")]
     pub(crate) form_factors: Option<FormFactorChoice>,
+
+    /// Steps of shooting at most; light that is still on its way then is estimated
+    #[arg(long, value_name = "N")]
+    pub(crate) steps: Option<u32>,
 
     /// Takes the light saved in this file, without computing it
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -57,6 +63,8 @@ pub(crate) enum SolverChoice {
     Hierarchical,
     /// The book's: form factors between all patches, and relaxation
     GaussSeidel,
+    /// Progressive refinement: the patch with most unsent light sends it, and there is a picture at once
+    Shooting,
 }
 
 /// The ways to find form factors.
@@ -77,19 +85,28 @@ impl LightArguments {
             ("--smallest-patch", self.smallest_patch.is_some()),
             ("--link-error", self.link_error.is_some()),
             ("--form-factors", self.form_factors.is_some()),
+            ("--steps", self.steps.is_some()),
             ("--solution", self.solution.is_some()),
             ("--save-solution", self.save_solution.is_some()),
         ];
         given.iter().find(|(_, given)| *given).map(|(name, _)| *name)
     }
 
-    /// Refuses options of one solver where the other one is chosen.
+    /// Refuses options of one solver where another one is chosen.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        let book = self.solver == Some(SolverChoice::GaussSeidel);
-        match (book, self.link_error, self.form_factors) {
-            (true, Some(_), _) => Err(Failure::usage("--link-error belongs to --solver hierarchical")),
-            (false, _, Some(_)) => Err(Failure::usage("--form-factors belongs to --solver gauss-seidel")),
-            _ => Ok(()),
+        let solver = self.solver.unwrap_or(SolverChoice::Hierarchical);
+        let hierarchical = solver == SolverChoice::Hierarchical;
+        match () {
+            () if self.link_error.is_some() && !hierarchical => {
+                Err(Failure::usage("--link-error belongs to --solver hierarchical"))
+            }
+            () if self.form_factors.is_some() && hierarchical => {
+                Err(Failure::usage("--form-factors belongs to --solver gauss-seidel and shooting"))
+            }
+            () if self.steps.is_some() && solver != SolverChoice::Shooting => {
+                Err(Failure::usage("--steps belongs to --solver shooting"))
+            }
+            () => Ok(()),
         }
     }
 
@@ -100,11 +117,13 @@ impl LightArguments {
             solver: match self.solver {
                 Some(SolverChoice::Hierarchical) | None => Solver::Hierarchical,
                 Some(SolverChoice::GaussSeidel) => Solver::GaussSeidel,
+                Some(SolverChoice::Shooting) => Solver::Shooting,
             },
             factors: match self.form_factors {
                 Some(FormFactorChoice::Hemicube) => FactorMethod::HEMICUBE,
                 Some(FormFactorChoice::RayCast) | None => FactorMethod::default(),
             },
+            max_steps: self.steps,
             mesh: MeshSettings { patch_size: self.patch_size, ..MeshSettings::default() },
             hierarchy: HierarchySettings {
                 threshold: self.link_error.unwrap_or(standard.threshold),
@@ -154,7 +173,7 @@ impl LightFiles {
     }
 
     /// The light of the scene read from `name`: from the file, or computed, and then saved where that is
-    /// asked for.
+    /// asked for. `on_round` sees it as far as it has come.
     pub(crate) fn light(
         &self,
         name: &Path,
@@ -162,20 +181,33 @@ impl LightFiles {
         settings: &Settings,
         control: &Control<'_>,
         interrupt: &Interrupt,
-    ) -> Result<Solution, Failure> {
+        on_round: &mut OnRound<'_>,
+    ) -> Result<Light, Failure> {
         let failure = |error: Error| Failure::of_scene(name, &error);
         if let Some((path, bytes)) = &self.solution {
             let fingerprint = scene_light_fingerprint(scene, settings).map_err(failure)?;
             let refused = |error| Failure::input(format!("{}: {error}", path.display()));
-            return Solution::load(bytes, Some(fingerprint)).map_err(refused);
+            return Solution::load(bytes, Some(fingerprint)).map(|s| Light::of(s, &[])).map_err(refused);
         }
-        let light = self.compute(scene, settings, control, interrupt).map_err(failure)?;
-        if let Some(path) = &self.save {
+        let mut compute = || self.compute(scene, settings, control, interrupt, on_round);
+        let Some(path) = &self.save else {
+            let light = compute().map_err(failure)?;
+            return match interrupt.is_raised() {
+                true => Err(Failure::Interrupted),
+                false => Ok(Light::of(light.solution, &light.warnings)),
+            };
+        };
+        let light = interrupt.while_keeping(|| {
+            let light = compute().map_err(failure)?;
             let bytes = light.solution.save(light.fingerprint);
             // Written after Ctrl-C, too: that is what it is for.
             interrupt.while_writing(|| senca::io::write_file(path, &bytes))?;
+            Ok::<_, Failure>(light)
+        })?;
+        match interrupt.is_raised() {
+            true => Err(Failure::Interrupted),
+            false => Ok(Light::of(light.solution, &light.warnings)),
         }
-        if interrupt.is_raised() { Err(Failure::Interrupted) } else { Ok(light.solution) }
     }
 
     /// Computes until it is done, the time is up, or Ctrl-C.
@@ -185,9 +217,10 @@ impl LightFiles {
         settings: &Settings,
         control: &Control<'_>,
         interrupt: &Interrupt,
+        on_round: &mut OnRound<'_>,
     ) -> Result<ComputedLight, Error> {
         let Some(limit) = self.time_limit else {
-            return compute_light(scene, settings, control, &mut |_| {});
+            return compute_light(scene, settings, control, on_round);
         };
         let (stop, done) = (AtomicBool::new(false), AtomicBool::new(false));
         let start = Instant::now();
@@ -199,9 +232,51 @@ impl LightFiles {
                 stop.store(true, Ordering::Relaxed);
             });
             let control = Control { progress: control.progress, cancel: Some(&stop) };
-            let light = compute_light(scene, settings, &control, &mut |_| {});
+            let light = compute_light(scene, settings, &control, on_round);
             done.store(true, Ordering::Relaxed);
             light
         })
     }
+}
+
+/// Light, and what to tell of it.
+pub(crate) struct Light {
+    pub(crate) solution: Solution,
+    warnings: Vec<String>,
+}
+
+impl Light {
+    fn of(solution: Solution, warnings: &[Warning]) -> Self {
+        let mut warnings: Vec<String> = warnings.iter().map(|warning| warning.0.clone()).collect();
+        warnings.extend(inexact(&solution.report));
+        Self { solution, warnings }
+    }
+
+    /// Says what was mended or left out, and that light is not exact where it is not.
+    pub(crate) fn tell_warnings(&self, name: &Path) {
+        for warning in &self.warnings {
+            tell(&format!("senca: {}: warning: {warning}", name.display()));
+        }
+    }
+}
+
+/// Says that light is not as exact as it was asked to be, where it is not.
+fn inexact(report: &SolveReport) -> Option<String> {
+    if report.converged {
+        return None;
+    }
+    let SolveReport { iterations, residual, energy_error, unsent, .. } = report;
+    Some(if *unsent > 0.0 {
+        format!(
+            "the light is not as exact as asked for: after {iterations} step{} {:.2} % of it is not sent on yet, and \
+             estimated (residual {residual:.1e})",
+            if *iterations == 1 { "" } else { "s" },
+            100.0 * unsent
+        )
+    } else {
+        format!(
+            "the light is not as exact as asked for: after {iterations} rounds it changed by {residual:.1e} of the \
+             brightest, and {energy_error:.1e} of the power is not accounted for"
+        )
+    })
 }

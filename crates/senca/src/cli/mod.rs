@@ -12,7 +12,7 @@ pub(crate) mod values;
 
 pub(crate) use failure::Failure;
 pub(crate) use interrupt::Interrupt;
-pub(crate) use light::{LightArguments, LightFiles};
+pub(crate) use light::{Light, LightArguments, LightFiles};
 pub(crate) use progress::Progress;
 pub(crate) use stats::{
     RadiosityStats, Seconds, Stages, Stats, Stopwatch, TracingStats, Triangles, peak_bytes,

@@ -57,12 +57,14 @@ pub(crate) struct RadiosityStats {
     pub(crate) elements: u64,
     /// Form factors, or links between elements.
     pub(crate) links: u64,
-    /// Rounds of the solver.
+    /// Rounds of the solver, or steps of shooting.
     pub(crate) iterations: u32,
-    /// The last change of a radiosity, as a share of the largest.
+    /// The last change of a radiosity, or the largest that is not sent yet, as a share of the largest.
     pub(crate) residual: f64,
     /// Power that is not accounted for, as a share of all.
     pub(crate) energy_error: f64,
+    /// Power that shooting has not sent yet, as a share of all.
+    pub(crate) unsent: f64,
     /// Whether the solver met its tolerance.
     pub(crate) converged: bool,
 }
@@ -78,6 +80,7 @@ impl RadiosityStats {
             iterations: report.iterations,
             residual: report.residual,
             energy_error: report.energy_error,
+            unsent: report.unsent,
             converged: report.converged,
         }
     }
@@ -245,7 +248,9 @@ mod tests {
     fn light_is_told_where_it_was_computed() {
         let stats = Stats { radiosity: Some(RadiosityStats::default()), ..Stats::default() };
         let json = serde_json::to_value(stats).expect("plain data");
-        for key in ["patches", "elements", "links", "iterations", "residual", "energy_error", "converged"] {
+        for key in
+            ["patches", "elements", "links", "iterations", "residual", "energy_error", "unsent", "converged"]
+        {
             assert!(json.get(key).is_some(), "{key}");
         }
     }

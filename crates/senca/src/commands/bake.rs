@@ -75,12 +75,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.quiet);
     let report = |done: f32| progress.report(COMPUTING * done);
     let control = Control { progress: Some(&report), cancel: Some(interrupt.flag()) };
-    let solution = files.light(name, &scene, &settings, &control, &interrupt)?;
-    let baked = bake_light(&scene, &solution, &settings, arguments.lightmap)
+    let light = files.light(name, &scene, &settings, &control, &interrupt, &mut |_| {})?;
+    let baked = bake_light(&scene, &light.solution, &settings, arguments.lightmap)
         .map_err(|error| Failure::of_scene(name, &error))?;
     let mut warnings = Vec::new();
     let bytes = write_glb(&baked, &WriteSettings::default(), &mut warnings)?;
     progress.finish();
+    if !arguments.quiet {
+        light.tell_warnings(name);
+    }
     output::write(&arguments.output, &bytes, &interrupt)?;
     for warning in warnings.iter().filter(|_| !arguments.quiet) {
         tell(&format!("senca: {}: warning: {}", arguments.output.display(), warning.0));

@@ -75,7 +75,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// No progress bar
+    /// No progress bar and no warnings
     #[arg(long, short)]
     quiet: bool,
 }
@@ -122,11 +122,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let first = |done: f32| progress.report(0.8 * done);
     let second = |done: f32| progress.report(0.8 + 0.2 * done);
     let control = Control { progress: Some(&first), cancel: Some(interrupt.flag()) };
-    let solution = files.light(name, &scene, &settings, &control, &interrupt)?;
+    let light = files.light(name, &scene, &settings, &control, &interrupt, &mut |_| {})?;
     let control = Control { progress: Some(&second), ..control };
-    let report = measure_lux(&scene, &solution, &settings, &grid, arguments.luminance_of_one, &control);
+    let report = measure_lux(&scene, &light.solution, &settings, &grid, arguments.luminance_of_one, &control);
     let report = report.map_err(|error| Failure::of_scene(name, &error))?;
     progress.finish();
+    if !arguments.quiet {
+        light.tell_warnings(name);
+    }
 
     if let Some((path, format)) = arguments.picture.as_deref().zip(picture) {
         let most = arguments.scale_max.unwrap_or_else(|| round_up(report.most()));

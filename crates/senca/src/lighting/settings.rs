@@ -12,8 +12,11 @@ pub struct RadiositySettings {
     pub mesh: MeshSettings,
     /// How exact a solution by [`Solver::Hierarchical`] is.
     pub hierarchy: HierarchySettings,
-    /// How [`Solver::GaussSeidel`] finds form factors.
+    /// How [`Solver::GaussSeidel`] and [`Solver::Shooting`] find form factors.
     pub factors: FactorMethod,
+    /// Steps of [`Solver::Shooting`] at most; what is on its way then is estimated. Default: as many as it
+    /// takes.
+    pub max_steps: Option<u32>,
     /// How elements look at lamps and the sky.
     pub direct: DirectSettings,
     /// How light gets from the elements to the picture.
@@ -40,6 +43,9 @@ pub enum Solver {
     Hierarchical,
     /// The method of the book: form factors between all patches, and relaxation.
     GaussSeidel,
+    /// The same patches, of which the one with most light not sent yet sends it to all others: a picture
+    /// after the first step (progressive refinement).
+    Shooting,
 }
 
 /// The ways from elements to a picture.

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use senca_math::{Control, LinearRgb};
 use senca_pipeline::Culling;
-use senca_radiosity::book::{self, BookSettings};
+use senca_radiosity::book::{self, BookSettings, Relaxation, ShootingRule};
 use senca_radiosity::{
     DirectLight, DirectSettings, ElementMesh, MeshSettings, Occluders, Sides, Solution, light_fingerprint,
     solve_hierarchy,
@@ -56,14 +56,15 @@ pub fn compute_light(
     let fingerprint = scene_light_fingerprint(scene, settings)?;
     let (solution, warnings) = on_threads(settings.drawing.threads, || match radiosity.solver {
         Solver::Hierarchical => {
-            let mesh = ElementMesh::of_scene(&prepared.scene, &mesh_settings)?;
+            let (mut mesh, mut warnings) =
+                ElementMesh::of_scene_with_warnings(&prepared.scene, &mesh_settings)?;
+            warnings.extend(mesh.hold_reflectance(BookSettings::default().largest_reflectance));
             let solution = hierarchical(&prepared.scene, mesh, radiosity, control, on_round)?;
-            Ok::<_, Error>((solution, Vec::new()))
+            Ok::<_, Error>((solution, warnings))
         }
-        Solver::GaussSeidel => {
-            let (direct, factors) = (radiosity.direct, radiosity.factors);
-            let book = BookSettings { mesh: mesh_settings, direct, factors, ..BookSettings::default() };
-            let solved = book::solve(&prepared.scene, &book, control)?;
+        Solver::GaussSeidel | Solver::Shooting => {
+            let book = book_settings(radiosity, mesh_settings);
+            let solved = book::solve(&prepared.scene, &book, control, |solution| on_round(solution))?;
             Ok((solved.solution, solved.warnings))
         }
     })??;
@@ -77,6 +78,16 @@ pub fn compute_light(
 pub fn scene_light_fingerprint(scene: &Scene, settings: &Settings) -> Result<u64, Error> {
     let posed = crate::prepare::posed(Cow::Borrowed(scene), settings.moment.as_ref())?;
     Ok(light_fingerprint(&posed))
+}
+
+fn book_settings(radiosity: &RadiositySettings, mesh: MeshSettings) -> BookSettings {
+    let rule = ShootingRule { max_steps: radiosity.max_steps.unwrap_or(u32::MAX), ..ShootingRule::default() };
+    let relaxation = match radiosity.solver {
+        Solver::Shooting => Relaxation::Shooting(rule),
+        Solver::GaussSeidel | Solver::Hierarchical => Relaxation::GaussSeidel,
+    };
+    let (direct, factors) = (radiosity.direct, radiosity.factors);
+    BookSettings { mesh, direct, factors, relaxation, ..BookSettings::default() }
 }
 
 fn hierarchical(

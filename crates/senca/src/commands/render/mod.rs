@@ -56,14 +56,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let partial = Partial::of(&arguments.tracing)?;
     let light = arguments.light_files()?;
+    if arguments.radiosity.preview.is_some() && output::is_standard(target.path()) {
+        return Err(Failure::usage("--preview writes a file again and again; name one by -o"));
+    }
     let mut seconds = Seconds { load: watch.lap(), ..Seconds::default() };
 
     let progress = Progress::new(running.quiet);
     let report_progress = |done| progress.report(done);
     let control = Control { progress: Some(&report_progress), cancel: Some(interrupt.flag()) };
+    let mut computed = None;
+    let write_early = |image, report| {
+        let mut drawn = target.drawn(image, report);
+        drawn.map_tones(arguments.drawing.tone_map.into());
+        // What cannot be written is told at the end.
+        if let Ok(bytes) = drawn.encode() {
+            drop(output::write(target.path(), &bytes, &interrupt));
+        }
+    };
     let drawn = match settings.method {
-        Method::Radiosity => radiosity::draw(arguments, &light, scene, &settings, &control, &interrupt)
-            .map(|(image, report)| target.drawn(image, report)),
+        Method::Radiosity => {
+            radiosity::draw(arguments, &light, scene, &settings, &control, &interrupt, &write_early).map(
+                |(image, report, light)| {
+                    computed = Some(light);
+                    target.drawn(image, report)
+                },
+            )
+        }
         _ => target.draw(Cow::Owned(scene), &settings, &control, &partial, &interrupt).map_err(|error| {
             match error {
                 Error::Partial(_) => Failure::input(format!("{}: {error}", partial.name())),
@@ -74,8 +92,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish();
     partial.outcome()?;
     let mut drawn = drawn?;
-    if let Some(warning) = radiosity::warning(&drawn.report).filter(|_| !running.quiet) {
-        tell(&format!("senca: {}: warning: {warning}", arguments.scene.display()));
+    if let Some(light) = computed.filter(|_| !running.quiet) {
+        light.tell_warnings(&arguments.scene);
     }
     if !running.quiet && shows_nothing(&settings, &drawn.report) {
         tell(&format!(

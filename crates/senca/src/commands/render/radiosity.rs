@@ -1,14 +1,16 @@
 //! `senca render --method radiosity`.
 
 use std::borrow::Cow;
+use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use senca::pipeline::Control;
+use senca::radiosity::Solution;
 use senca::{Display, Image, Method, RadiositySettings, Report, Scene, Settings, Show, show_light};
 
 use super::Arguments;
-use crate::cli::values::positive;
-use crate::cli::{Failure, Interrupt, LightArguments, LightFiles};
+use crate::cli::values::{duration, positive};
+use crate::cli::{Failure, Interrupt, Light, LightArguments, LightFiles};
 
 /// How light is computed and shown.
 #[derive(Args, Debug, Default)]
@@ -32,6 +34,10 @@ pub(crate) struct RadiosityArguments {
     /// Equal steps of false colours are equal factors
     #[arg(long)]
     pub(crate) log_scale: bool,
+
+    /// Writes the picture this often while light is computed, as far as it has come: 5s, 1m
+    #[arg(long, value_name = "DURATION", value_parser = duration)]
+    pub(crate) preview: Option<Duration>,
 
     /// Luminance that a shown 1 stands for, in candela per square metre
     #[arg(long, value_name = "CD/M2", value_parser = positive, default_value = "1")]
@@ -74,6 +80,7 @@ impl RadiosityArguments {
             ("--show", self.show.is_some()),
             ("--scale-max", self.scale_max.is_some()),
             ("--log-scale", self.log_scale),
+            ("--preview", self.preview.is_some()),
         ];
         let given = given.iter().find(|(_, given)| *given).map(|(name, _)| *name);
         match given.or_else(|| self.light.any()) {
@@ -124,7 +131,7 @@ impl From<DisplayChoice> for Display {
 /// Share of the progress bar that computing takes.
 const COMPUTING: f32 = 0.8;
 
-/// Draws a scene by radiosity.
+/// Draws a scene by radiosity. `write_early` gets pictures of light that is still being computed.
 pub(super) fn draw(
     arguments: &Arguments,
     files: &LightFiles,
@@ -132,22 +139,26 @@ pub(super) fn draw(
     settings: &Settings,
     control: &Control<'_>,
     interrupt: &Interrupt,
-) -> Result<(Image, Report), Failure> {
+    write_early: &(dyn Fn(Image, Report) + Sync),
+) -> Result<(Image, Report, Light), Failure> {
     let first = |share: f32| control.report(COMPUTING * share);
     let second = |share: f32| control.report(COMPUTING + (1.0 - COMPUTING) * share);
     let computing = Control { progress: Some(&first), cancel: control.cancel };
-    let light = files.light(&arguments.scene, &scene, settings, &computing, interrupt)?;
+    let quiet = Control { progress: None, cancel: control.cancel };
+    let mut last: Option<Instant> = None;
+    let mut early = |solution: &Solution| {
+        let Some(every) = arguments.radiosity.preview else { return };
+        if last.is_some_and(|last| last.elapsed() < every) {
+            return;
+        }
+        if let Ok((image, report)) = show_light(Cow::Borrowed(&scene), solution, settings, &quiet) {
+            write_early(image, report);
+        }
+        last = Some(Instant::now());
+    };
+    let light = files.light(&arguments.scene, &scene, settings, &computing, interrupt, &mut early)?;
     let showing = Control { progress: Some(&second), cancel: control.cancel };
-    show_light(Cow::Owned(scene), &light, settings, &showing)
-        .map_err(|error| Failure::of_scene(&arguments.scene, &error))
-}
-
-/// Says that light is not as exact as it was asked to be, where it is not.
-pub(super) fn warning(report: &Report) -> Option<String> {
-    let light = report.radiosity.filter(|light| !light.converged)?;
-    Some(format!(
-        "the light is not as exact as asked for: after {} rounds it changed by {:.1e} of the brightest, and {:.1e} of the \
-         power is not accounted for",
-        light.iterations, light.residual, light.energy_error
-    ))
+    let (image, report) = show_light(Cow::Owned(scene), &light.solution, settings, &showing)
+        .map_err(|error| Failure::of_scene(&arguments.scene, &error))?;
+    Ok((image, report, light))
 }
