@@ -201,3 +201,5 @@ fn a_lit_vertex_has_the_colour_of_the_formula() {
     // 0.2 * 0.2 + 0.2 * 0.1 + 0.8 * 0.5 = 0.46, and 0.25 times the specular colour.
     assert_eq!(pixel(&mut c, 4, 1, 1), [181, 149, 117, 255]);
 }
+
+mod samples;
