@@ -35,6 +35,7 @@ mod context;
 mod debug;
 mod error;
 mod eval;
+mod fragment;
 mod framebuffer;
 mod get;
 #[path = "tokens.rs"]

@@ -88,8 +88,7 @@ pub struct State {
     pub point_sizes: Option<usize>,
     /// Which pixels belong to lines and points. Default: [`StrokeRule::Centres`].
     pub strokes: StrokeRule,
-    /// Pattern lines are broken up by; it runs on from a line to the next one if that begins with the
-    /// index this one ended with. Default: none.
+    /// Pattern lines are broken up by. Default: none.
     pub stipple: Option<LineStipple>,
     /// Whether alpha is multiplied by the share of the pixel that a primitive covers, and all pixels it
     /// touches are drawn: lines as rectangles, points as discs, of any size. Stages find the share in
@@ -116,6 +115,18 @@ pub struct LineStipple {
     pub factor: u32,
     /// Bits of drawn fragments, the lowest first.
     pub pattern: u16,
+    /// When the pattern runs on from the line before, instead of beginning anew.
+    pub joins: StippleJoins,
+}
+
+/// Which lines go on with the pattern of the line before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StippleJoins {
+    /// Those that begin with the index that one ended with.
+    #[default]
+    ByIndex,
+    /// Those whose identifier is odd.
+    ByOddId,
 }
 
 impl Default for State {
@@ -358,17 +369,18 @@ pub trait FragmentShader: Sync {
     fn shade(&self, fragments: &Fragments<'_>, out: &mut Shaded);
 }
 
-/// A batch of fragments of one primitive: lane `i` is pixel `(x + i % 8, y + i / 8)`.
+/// A batch of fragments of one primitive: lane `i` is pixel `(x + i % columns, y + i / columns)`.
 ///
 /// Lanes outside `mask` are not drawn, but have varyings all the same (continued beyond the
-/// primitive), so that differences of neighbours are screen derivatives: lanes `2k`, `2k + 1`,
-/// `2k + 8`, `2k + 9` are a square of 2 x 2 pixels.
+/// primitive), so that differences of neighbours are screen derivatives; see [`Fragments::quads`].
 #[derive(Clone, Copy, Debug)]
 pub struct Fragments<'a> {
-    /// Column of lane 0, a multiple of 8.
+    /// Column of lane 0, a multiple of `columns`.
     pub x: u32,
-    /// Row of lane 0, even.
+    /// Row of lane 0, a multiple of the rows.
     pub y: u32,
+    /// Lanes in a row: 8, or 4 where pixels have several samples.
+    pub columns: u32,
     /// Bit `i` set: lane `i` is covered, and nearer than what is there.
     pub mask: u16,
     /// Window depth, 0 near to 1 far.
@@ -387,13 +399,22 @@ impl Fragments<'_> {
     /// Column of lane `i`.
     #[must_use]
     pub fn column(&self, i: usize) -> u32 {
-        self.x + (i % 8) as u32
+        self.x + i as u32 % self.columns
     }
 
     /// Row of lane `i`.
     #[must_use]
     pub fn row(&self, i: usize) -> u32 {
-        self.y + (i / 8) as u32
+        self.y + i as u32 / self.columns
+    }
+
+    /// Squares of 2 x 2 pixels: the lanes of each, first row first.
+    pub fn quads(&self) -> impl Iterator<Item = [usize; 4]> + use<> {
+        let columns = self.columns as usize;
+        (0..4).map(move |k| {
+            let corner = if columns == 8 { 2 * k } else { 8 * (k / 2) + 2 * (k % 2) };
+            [corner, corner + 1, corner + columns, corner + columns + 1]
+        })
     }
 
     /// Lanes to shade, in rising order.
@@ -405,9 +426,13 @@ impl Fragments<'_> {
     /// Change of `value` per pixel in x and in y at lane `i`, from its square of 2 x 2 pixels.
     #[must_use]
     pub fn derivatives(&self, value: &[f32; LANES], i: usize) -> [f32; 2] {
-        let corner = i & !9;
-        let (row, column) = (i & 8, i & 1);
-        [value[corner + row + 1] - value[corner + row], value[corner + column + 8] - value[corner + column]]
+        let below = self.columns as usize;
+        let (row, column) = (i & below, i & 1);
+        let corner = i & !(below | 1);
+        [
+            value[corner + row + 1] - value[corner + row],
+            value[corner + column + below] - value[corner + column],
+        ]
     }
 }
 

@@ -536,6 +536,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         Fragments {
             x: (self.tile[0] as usize + place.block % BLOCKS * 8) as u32,
             y: (self.tile[1] as usize + place.block / BLOCKS * 8 + place.pair * 2) as u32,
+            columns: 8,
             mask,
             depth,
             varyings,

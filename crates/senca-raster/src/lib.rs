@@ -67,7 +67,7 @@ mod tiled;
 pub use api::{
     Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FragmentShader, Fragments, Ids,
     Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading, State,
-    StrokeRule, TextureUnit, Viewport,
+    StippleJoins, StrokeRule, TextureUnit, Viewport,
 };
 pub use fearless_simd::{self as simd, Level as SimdLevel};
 pub use scanline::ScanlineRasterizer;

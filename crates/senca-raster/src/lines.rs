@@ -13,7 +13,9 @@
 //! Several threads draw strips of rows, each all primitives in order as far as they lie in its strip:
 //! every pixel meets its fragments in the same order as with one strip that is the whole picture.
 
-use crate::api::{Counters, Interpolation, LineStipple, Primitives, Shading, State, StrokeRule};
+use crate::api::{
+    Counters, Interpolation, LineStipple, Primitives, Shading, State, StippleJoins, StrokeRule,
+};
 use crate::assemble::{varyings_of, vertex_count};
 use crate::clip::{VIEW_VOLUME, clip_line, wholly_outside};
 use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, ceil_div};
@@ -117,7 +119,13 @@ pub(crate) fn draw<const N: usize, S: Stroke<N>>(
             _ => run.par_iter().with_min_len(WORTH_SHARING).map(prepare).collect(),
         };
         prepared.iter().for_each(|p| p.count(&mut counters));
-        let starts = state.stipple.map(|_| pattern.starts(run, &prepared)).unwrap_or_default();
+        let starts = state.stipple.map(|stipple| {
+            pattern.starts(run, &prepared, |n| match stipple.joins {
+                StippleJoins::ByIndex => None,
+                StippleJoins::ByOddId => Some(primitives.ids.of(r * RUN + n) & 1 == 1),
+            })
+        });
+        let starts = starts.unwrap_or_default();
         let rows: Vec<[i32; 2]> = prepared.iter().map(|p| p.rows(map.bounds.y1)).collect();
         counters += in_strips(target, threads, |strip, first_row| {
             let mut sink = Sink::new(strip, first_row, state, shading, &map);
@@ -162,8 +170,7 @@ impl<S> Prepared<S> {
     }
 }
 
-/// How far the stipple pattern is. It runs on from a line to the next one if that begins with the
-/// vertex this one ended with, and restarts otherwise.
+/// How far the stipple pattern is, from line to line.
 #[derive(Default)]
 struct Pattern {
     last: Option<u32>,
@@ -175,9 +182,10 @@ impl Pattern {
         &mut self,
         run: &[[u32; N]],
         prepared: &[Prepared<S>],
+        goes_on: impl Fn(usize) -> Option<bool>,
     ) -> Vec<u64> {
-        let start = |(vertices, prepared): (&[u32; N], &Prepared<S>)| {
-            if self.last != vertices.first().copied() {
+        let start = |(n, (vertices, prepared)): (usize, (&[u32; N], &Prepared<S>))| {
+            if !goes_on(n).unwrap_or(self.last == vertices.first().copied()) {
                 self.advanced = 0;
             }
             let start = self.advanced;
@@ -187,7 +195,7 @@ impl Pattern {
             }
             start
         };
-        run.iter().zip(prepared).map(start).collect()
+        run.iter().zip(prepared).enumerate().map(start).collect()
     }
 }
 

@@ -192,6 +192,7 @@ impl RowFiller<'_, '_> {
         let fragments = Fragments {
             x: batch.x as u32,
             y: batch.y as u32,
+            columns: 8,
             mask: batch.mask,
             depth: batch.depth,
             varyings: values,

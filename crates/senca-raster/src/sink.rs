@@ -141,6 +141,7 @@ impl<'a, 't> Sink<'a, 't> {
         let fragments = Fragments {
             x: self.batch.x as u32,
             y: self.batch.y as u32,
+            columns: 8,
             mask: std::mem::take(&mut self.batch.mask),
             depth: self.batch.depth,
             varyings: &planes[..self.stride],

@@ -185,6 +185,18 @@ impl<'a> Target<'a> {
         if found == expected { Ok(()) } else { Err(TargetError::PlaneSize { expected, found }) }
     }
 
+    /// Whether there is a depth plane.
+    #[must_use]
+    pub fn has_depth(&self) -> bool {
+        self.depth.is_some()
+    }
+
+    /// Whether there is a stencil plane.
+    #[must_use]
+    pub fn has_stencil(&self) -> bool {
+        self.stencil.is_some()
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {

@@ -3,7 +3,7 @@
 use senca_math::glam::Vec4;
 use senca_raster::{
     Blend, Buffers, Compare, Ids, Interpolation, LineStipple, Primitives, Rasterizer, ScanlineRasterizer,
-    Shading, State, StrokeRule, TiledRasterizer, TiledSettings,
+    Shading, State, StippleJoins, StrokeRule, TiledRasterizer, TiledSettings,
 };
 
 const SIDE: u32 = 16;
@@ -210,7 +210,7 @@ fn points_of_opengl_lie_about_their_pixel() {
 #[test]
 fn stipple_runs_on_from_line_to_line() {
     let points: Vec<Vec4> = [[0.5, 2.5], [6.5, 2.5], [12.5, 2.5]].map(|[x, y]| at(x, y, 0.5)).to_vec();
-    let stipple = Some(LineStipple { factor: 2, pattern: 0x5555 });
+    let stipple = Some(LineStipple { factor: 2, pattern: 0x5555, joins: StippleJoins::ByIndex });
     for rule in [StrokeRule::Centres, StrokeRule::OpenGl] {
         let state = State { stipple, strokes: rule, ..State::default() };
         let columns = |indices: &[u32]| {

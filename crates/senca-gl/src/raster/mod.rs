@@ -1,11 +1,16 @@
 //! Drawing what has been gathered: the state of OpenGL into the rasterizer's terms.
 
+mod shading;
+
+use crate::fragment::Program;
 use crate::raster_state::{Batch, Kind, RasterState};
 use crate::state::Cap;
 use crate::{Context, Enum, gl};
 use senca_raster::{
-    ColorSource, Compare, Cull, DepthBias, Ids, Primitives, Rasterizer, Rect, Shading, State, Viewport,
+    Compare, Counters, Cull, DepthBias, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading, State,
+    StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
+use shading::simple_shading;
 
 /// The smallest step of a depth buffer of 24 bits.
 const DEPTH_UNIT: f32 = 1.0 / (1 << 24) as f32;
@@ -14,32 +19,83 @@ impl Context {
     /// Draws a batch; returns how many samples passed.
     pub(crate) fn draw_batch(&mut self, batch: &Batch) -> u64 {
         let Some(mut target) = self.framebuffers.target() else { return 0 };
-        let state = raster_state(batch);
-        let primitives = Primitives {
-            positions: &batch.positions,
-            varyings: &batch.varyings,
-            stride: usize::from(batch.layout.stride),
-            indices: &batch.indices,
-            ids: Ids::Same(0),
-        };
-        let shading = Shading::Fixed { color: ColorSource::Rgba { first: 0 }, texture: None };
-        let rasterizer = &mut self.rasterizer;
-        let counters = match batch.kind {
-            Kind::Triangles => rasterizer.draw(&mut target, &primitives, &state, &shading),
-            Kind::Lines | Kind::PolygonLines => {
-                rasterizer.draw_lines(&mut target, &primitives, &state, &shading)
-            }
-            Kind::Points | Kind::PolygonPoints => {
-                rasterizer.draw_points(&mut target, &primitives, &state, &shading)
-            }
-        };
-        counters.passed
+        draw(&mut self.rasterizer, &mut target, batch).passed
     }
+}
+
+/// Draws a batch into a target.
+fn draw(rasterizer: &mut TiledRasterizer, target: &mut Target<'_>, batch: &Batch) -> Counters {
+    let s = &batch.state;
+    let both_culled = s.has(Cap::CullFace) && s.polygon.cull_face == gl::FRONT_AND_BACK;
+    if both_culled && batch.kind == Kind::Triangles {
+        return Counters::default();
+    }
+    let mut state = raster_state(batch);
+    let stride = usize::from(batch.layout.stride);
+    let sized = with_sizes(batch, stride);
+    let (varyings, stride) = match &sized {
+        Some(sized) => (sized.as_slice(), stride + 1),
+        None => (batch.varyings.as_slice(), stride),
+    };
+    let joins: Vec<u32> = match state.stipple {
+        Some(_) => batch.continues.iter().map(|goes_on| u32::from(*goes_on)).collect(),
+        None => Vec::new(),
+    };
+    let primitives = Primitives {
+        positions: &batch.positions,
+        varyings,
+        stride,
+        indices: &batch.indices,
+        ids: if joins.is_empty() { Ids::Same(0) } else { Ids::Each(&joins) },
+    };
+    if let Some((shading, blend)) = simple_shading(s, batch.kind, target) {
+        state.blend = blend;
+        return dispatch(rasterizer, target, batch.kind, &primitives, &state, &shading);
+    }
+    let level = rasterizer.settings().level;
+    let buffers = [target.has_depth(), target.has_stencil()];
+    let program = Program::new(s, batch.kind, &batch.layout, level, buffers);
+    dispatch(rasterizer, target, batch.kind, &primitives, &state, &Shading::Stage(&program))
+}
+
+fn dispatch(
+    rasterizer: &mut TiledRasterizer,
+    target: &mut Target<'_>,
+    kind: Kind,
+    primitives: &Primitives<'_>,
+    state: &State,
+    shading: &Shading<'_>,
+) -> Counters {
+    match kind {
+        Kind::Triangles => rasterizer.draw(target, primitives, state, shading),
+        Kind::Lines | Kind::PolygonLines => rasterizer.draw_lines(target, primitives, state, shading),
+        Kind::Points | Kind::PolygonPoints => rasterizer.draw_points(target, primitives, state, shading),
+    }
+}
+
+/// Varyings with the size of points behind those of each vertex, where points have sizes of their own.
+fn with_sizes(batch: &Batch, stride: usize) -> Option<Vec<f32>> {
+    if batch.kind != Kind::Points || batch.sizes.is_empty() {
+        return None;
+    }
+    let mut varyings = Vec::with_capacity(batch.positions.len() * (stride + 1));
+    for (own, size) in batch.varyings.chunks_exact(stride).zip(&batch.sizes) {
+        varyings.extend_from_slice(own);
+        varyings.push(*size);
+    }
+    Some(varyings)
 }
 
 fn raster_state(batch: &Batch) -> State {
     let s = &batch.state;
     let [x, y, width, height] = s.viewport.rect.map(|v| v as f32);
+    let lines = matches!(batch.kind, Kind::Lines | Kind::PolygonLines);
+    let smooth = match batch.kind {
+        Kind::Triangles => Cap::PolygonSmooth,
+        _ if lines => Cap::LineSmooth,
+        _ => Cap::PointSmooth,
+    };
+    let sizes = batch.kind == Kind::Points && !batch.sizes.is_empty();
     State {
         viewport: Some(Viewport { x, y, width, height }),
         scissor: s.has(Cap::ScissorTest).then(|| rect(s.scissor)),
@@ -50,6 +106,14 @@ fn raster_state(batch: &Batch) -> State {
         depth_bias: depth_bias(s, batch.kind),
         line_width: s.line.width,
         point_size: s.point.size,
+        point_sizes: sizes.then(|| usize::from(batch.layout.stride)),
+        strokes: StrokeRule::OpenGl,
+        stipple: (lines && s.has(Cap::LineStipple)).then_some(LineStipple {
+            factor: s.line.stipple_factor,
+            pattern: s.line.stipple_pattern,
+            joins: StippleJoins::ByOddId,
+        }),
+        antialias: s.has(smooth),
         ..State::default()
     }
 }

@@ -42,9 +42,7 @@ pub(crate) struct Bindings {}
 #[derive(Debug)]
 pub(crate) struct SavedBindings {}
 
-/// A complete texture as it was when drawing began.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct View {}
+pub(crate) use crate::fragment::View;
 
 impl Context {
     /// The texture that a unit draws with: of the most dimensions that is on and complete.

@@ -1,0 +1,381 @@
+//! What happens between rasterization and the buffers: texturing, colour sum, fog, and the operations
+//! per fragment (OpenGL 1.5, sections 3.8 to 3.10 and chapter 4.1).
+//!
+//! A [`Program`] is made of the state once per draw and is the rasterizer's stage. There are two of
+//! everything: the plain form goes through the fragments one by one by the specification's formulas;
+//! the fast one does sixteen at a time, falls back to the plain one for rare kinds of textures, and is
+//! tested against it.
+
+mod env;
+mod fast;
+mod ops;
+mod real;
+mod sample;
+mod shade;
+#[cfg(test)]
+mod tests;
+mod view;
+
+pub(crate) use ops::Blending;
+pub(crate) use sample::Sampled;
+pub(crate) use shade::{FogPlan, Shader, Unit};
+pub(crate) use view::View;
+
+use crate::raster_state::{Kind, RasterState};
+use crate::state::Cap;
+use crate::vertex::Layout;
+use crate::{Enum, gl};
+use env::Sources;
+use fast::{FastTexture, compares_lanes, packed, unpacked};
+use ops::{ColorWrite, Stencil, compares, logic};
+use real::{Color, clamped, constant};
+use senca_raster::simd::{Simd, dispatch, f32x16, mask32x16, prelude::*, u32x16};
+use senca_raster::{FragmentStage, Fragments, LANES, PixelColors, Pixels, Shaded, SimdLevel};
+
+/// The depth test, where the rasterizer must not do it.
+#[derive(Clone, Copy, Debug)]
+struct DepthTest {
+    func: Enum,
+    write: bool,
+}
+
+/// Everything that happens to fragments in a draw.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    level: SimdLevel,
+    shader: Shader,
+    /// Of each unit of the shader.
+    fast: Vec<Option<FastTexture>>,
+    alpha: Option<(Enum, f32)>,
+    /// 32 rows from the bottom, the most significant bit left.
+    polygon_stipple: Option<Box<[u32; 32]>>,
+    stencil: Option<Stencil>,
+    /// Where the stencil test wants to know of fragments that fail.
+    depth: Option<DepthTest>,
+    color: ColorWrite,
+    writes_color: bool,
+    needs_color: bool,
+    /// One fragment at a time.
+    plain: bool,
+}
+
+impl Program {
+    /// For primitives of a kind whose vertices have a layout. `has_stencil` and `has_depth` tell which
+    /// buffers there are.
+    pub(crate) fn new(
+        s: &RasterState,
+        kind: Kind,
+        layout: &Layout,
+        level: SimdLevel,
+        [has_depth, has_stencil]: [bool; 2],
+    ) -> Self {
+        let shader = shader_of(s, layout);
+        let stencil = (s.has(Cap::StencilTest) && has_stencil).then(|| Stencil::new(&s.stencil));
+        let depth_on = s.has(Cap::DepthTest) && has_depth;
+        let late = stencil.is_some_and(|stencil| stencil.needs_failures());
+        let alpha = s.has(Cap::AlphaTest).then_some((s.color.alpha_func, s.color.alpha_ref));
+        let alpha = alpha.filter(|(func, _)| *func != gl::ALWAYS);
+        let logic_op = s.has(Cap::ColorLogicOp).then_some(s.color.logic_op);
+        let blending = (s.has(Cap::Blend) && logic_op.is_none()).then(|| Blending::new(&s.color));
+        let color = ColorWrite { blending, logic_op, mask: s.color.mask };
+        let writes_color = color.mask != [false; 4];
+        Self {
+            level,
+            fast: shader.units.iter().map(|unit| FastTexture::new(&unit.texture)).collect(),
+            shader,
+            alpha,
+            polygon_stipple: (kind == Kind::Triangles && s.has(Cap::PolygonStipple))
+                .then(|| Box::new(s.polygon_stipple.0)),
+            stencil,
+            depth: late.then_some(DepthTest {
+                func: if depth_on { s.depth.func } else { gl::ALWAYS },
+                write: depth_on && s.depth.mask,
+            }),
+            color,
+            writes_color,
+            needs_color: writes_color || alpha.is_some(),
+            plain: false,
+        }
+    }
+
+    /// The same, one fragment at a time.
+    #[cfg(test)]
+    pub(crate) fn plain(self) -> Self {
+        Self { plain: true, ..self }
+    }
+
+    /// Lanes that the polygon stipple leaves.
+    fn stippled(&self, f: &Fragments<'_>) -> u16 {
+        let Some(pattern) = &self.polygon_stipple else { return u16::MAX };
+        let kept = f.lanes().filter(|&i| {
+            let (x, y) = (f.column(i) % 32, f.row(i) % 32);
+            pattern[y as usize] >> (31 - x) & 1 == 1
+        });
+        kept.fold(0, |mask, i| mask | 1 << i)
+    }
+
+    fn shade_plain(&self, f: &Fragments<'_>, out: &mut Shaded) {
+        if self.needs_color {
+            self.shader.shade_plain(f, &mut out.rgba);
+        }
+        for i in f.lanes() {
+            if let Some(coverage) = f.coverage {
+                out.rgba[3][i] *= coverage[i];
+            }
+            if self.alpha.is_some_and(|(func, reference)| !compares(func, out.rgba[3][i], reference)) {
+                out.discard(i);
+            }
+        }
+    }
+
+    fn merge_plain(&self, f: &Fragments<'_>, shaded: &Shaded, pixels: &mut Pixels<'_>) -> u16 {
+        let mut passed = 0;
+        for i in f.lanes() {
+            if !self.passes(f, pixels, i) {
+                continue;
+            }
+            passed |= 1 << i;
+            let new = shaded.rgba.map(|plane| plane[i]);
+            match &mut pixels.color {
+                PixelColors::None => {}
+                PixelColors::Rgba8(p) => p[i] = self.packed_pixel(new, p[i]),
+                PixelColors::Rgba32F(p) => {
+                    let old = [p[0][i], p[1][i], p[2][i], p[3][i]];
+                    let color = self.color.mixed(new, old);
+                    (0..4).filter(|&k| self.color.mask[k]).for_each(|k| p[k][i] = color[k]);
+                }
+            }
+        }
+        passed
+    }
+
+    /// Stencil and depth test of one fragment, with what they do.
+    fn passes(&self, f: &Fragments<'_>, pixels: &mut Pixels<'_>, i: usize) -> bool {
+        let (Some(stencil), Some(plane)) = (&self.stencil, &mut pixels.stencil) else { return true };
+        let stored = &mut plane[i];
+        if !stencil.passes(*stored) {
+            stencil.write(stencil.fail, stored);
+            return false;
+        }
+        if let (Some(test), Some(depth)) = (&self.depth, &mut pixels.depth) {
+            if !compares(test.func, f.depth[i], depth[i]) {
+                stencil.write(stencil.depth_fail, stored);
+                return false;
+            }
+            if test.write {
+                depth[i] = f.depth[i];
+            }
+        }
+        stencil.write(stencil.depth_pass, stored);
+        true
+    }
+
+    fn packed_pixel(&self, new: [f32; 4], stored: u32) -> u32 {
+        let old = stored.to_le_bytes().map(|v| f32::from(v) * (1.0 / 255.0));
+        let bytes = self.color.mixed(new, old).map(|v| (v * 255.0 + 0.5) as u8);
+        let mut word = u32::from_le_bytes(bytes);
+        if let Some(op) = self.color.logic_op {
+            word = logic(op, word, stored);
+        }
+        let bits = self.color.bits();
+        stored & !bits | word & bits
+    }
+
+    #[inline(always)]
+    fn shade_fast<S: Simd>(&self, simd: S, f: &Fragments<'_>, out: &mut Shaded) {
+        let mut color = if self.needs_color {
+            self.colored(simd, f)
+        } else {
+            constant(f32x16::splat(simd, 0.0), [0.0; 4])
+        };
+        if let Some(coverage) = f.coverage {
+            color[3] *= f32x16::load_array_ref(simd, coverage);
+        }
+        if let Some((func, reference)) = self.alpha {
+            let kept = compares_lanes(simd, func, color[3], f32x16::splat(simd, reference));
+            out.keep &= kept.to_bitmask() as u16;
+        }
+        for (plane, value) in out.rgba.iter_mut().zip(color) {
+            value.store_array(plane);
+        }
+    }
+
+    #[inline(always)]
+    fn colored<S: Simd>(&self, simd: S, f: &Fragments<'_>) -> Color<f32x16<S>> {
+        let varying = |k: usize| match f.varyings.get(k) {
+            Some(plane) => f32x16::load_array_ref(simd, plane),
+            None => f32x16::splat(simd, 0.0),
+        };
+        let primary = clamped([varying(0), varying(1), varying(2), varying(3)]);
+        let mut color = primary;
+        let units = &self.shader.units;
+        let mut texels = [(0, primary); crate::state::TEXTURE_UNITS];
+        let count = units.len().min(texels.len());
+        for ((unit, fast), to) in units.iter().zip(&self.fast).zip(&mut texels) {
+            *to = (unit.number, texel_lanes(simd, unit, fast.as_ref(), f));
+        }
+        for (unit, (_, texel)) in units.iter().zip(&texels) {
+            let s = Sources { primary, previous: color, texel: *texel, texels: &texels[..count] };
+            color = env::apply(&unit.env, unit.texture.base, &s);
+        }
+        if let Some(first) = self.shader.secondary {
+            let second = clamped([varying(first), varying(first + 1), varying(first + 2), primary[3]]);
+            let [r, g, b, _] =
+                clamped([color[0] + second[0], color[1] + second[1], color[2] + second[2], color[3]]);
+            color = [r, g, b, color[3]];
+        }
+        if let Some(fog) = &self.shader.fog {
+            let mut factors = [0.0; LANES];
+            if let Some(distances) = f.varyings.get(fog.coord) {
+                f.lanes().for_each(|i| factors[i] = fog.factor(distances[i]));
+            }
+            color = fog.mixed(color, f32x16::load_array_ref(simd, &factors));
+        }
+        color
+    }
+
+    #[inline(always)]
+    fn merge_fast<S: Simd>(
+        &self,
+        simd: S,
+        f: &Fragments<'_>,
+        shaded: &Shaded,
+        pixels: &mut Pixels<'_>,
+    ) -> u16 {
+        let mut passed = f.mask;
+        if self.stencil.is_some() {
+            passed = f.lanes().filter(|&i| self.passes(f, pixels, i)).fold(0, |mask, i| mask | 1 << i);
+        }
+        if passed == 0 || !self.writes_color {
+            return passed;
+        }
+        let keep = mask32x16::from_bitmask(simd, u64::from(passed));
+        let [r, g, b, a] = &shaded.rgba;
+        let new = [
+            f32x16::load_array_ref(simd, r),
+            f32x16::load_array_ref(simd, g),
+            f32x16::load_array_ref(simd, b),
+            f32x16::load_array_ref(simd, a),
+        ];
+        match &mut pixels.color {
+            PixelColors::None => {}
+            PixelColors::Rgba8(plane) => {
+                let stored = u32x16::load_array_ref(simd, plane);
+                let mut word = packed(self.color.mixed(new, unpacked(stored)));
+                if let Some(op) = self.color.logic_op {
+                    let (s, d) = (word.to_array(), stored.to_array());
+                    let mixed: [u32; LANES] = std::array::from_fn(|i| logic(op, s[i], d[i]));
+                    word = u32x16::load_array(simd, mixed);
+                }
+                let bits = self.color.bits();
+                if bits != u32::MAX {
+                    word = (stored & u32x16::splat(simd, !bits)) | (word & u32x16::splat(simd, bits));
+                }
+                keep.select(word, stored).store_array(plane);
+            }
+            PixelColors::Rgba32F(planes) => {
+                let [r, g, b, a] = &*planes;
+                let old = [
+                    f32x16::load_array_ref(simd, r),
+                    f32x16::load_array_ref(simd, g),
+                    f32x16::load_array_ref(simd, b),
+                    f32x16::load_array_ref(simd, a),
+                ];
+                let color = self.color.mixed(new, old);
+                for k in (0..4).filter(|&k| self.color.mask[k]) {
+                    keep.select(color[k], old[k]).store_array(planes[k]);
+                }
+            }
+        }
+        passed
+    }
+}
+
+/// The texels of a unit.
+#[inline(always)]
+fn texel_lanes<S: Simd>(
+    simd: S,
+    unit: &Unit,
+    fast: Option<&FastTexture>,
+    f: &Fragments<'_>,
+) -> Color<f32x16<S>> {
+    let coords = unit.coords(f);
+    let lods = unit.lods(f, &coords);
+    if let Some(fast) = fast
+        && let Some(texel) = fast.sample(simd, &unit.texture, &coords, &lods, f.mask)
+    {
+        return texel;
+    }
+    let mut planes = [[0.0; LANES]; 4];
+    for i in f.lanes() {
+        let at = [coords.at[0][i], coords.at[1][i], coords.at[2][i]];
+        let texel = unit.texture.sample(at, coords.reference[i], lods[i]);
+        (0..4).for_each(|k| planes[k][i] = texel[k]);
+    }
+    let [r, g, b, a] = &planes;
+    [
+        f32x16::load_array_ref(simd, r),
+        f32x16::load_array_ref(simd, g),
+        f32x16::load_array_ref(simd, b),
+        f32x16::load_array_ref(simd, a),
+    ]
+}
+
+impl FragmentStage for Program {
+    fn tests_depth(&self) -> bool {
+        self.depth.is_some()
+    }
+
+    fn discards(&self) -> bool {
+        self.alpha.is_some() || self.polygon_stipple.is_some() || self.stencil.is_some()
+    }
+
+    fn shades(&self) -> bool {
+        self.needs_color || self.polygon_stipple.is_some()
+    }
+
+    fn touches_color(&self) -> bool {
+        self.writes_color
+    }
+
+    fn touches_stencil(&self) -> bool {
+        self.stencil.is_some()
+    }
+
+    fn shade(&self, fragments: &Fragments<'_>, out: &mut Shaded) {
+        out.keep &= self.stippled(fragments);
+        let f = Fragments { mask: fragments.mask & out.keep, ..*fragments };
+        if f.mask == 0 {
+            return;
+        }
+        if self.plain {
+            return self.shade_plain(&f, out);
+        }
+        dispatch!(self.level, simd => self.shade_fast(simd, &f, out));
+    }
+
+    fn merge(&self, fragments: &Fragments<'_>, shaded: &Shaded, pixels: &mut Pixels<'_>) -> u16 {
+        if self.plain {
+            return self.merge_plain(fragments, shaded, pixels);
+        }
+        dispatch!(self.level, simd => self.merge_fast(simd, fragments, shaded, pixels))
+    }
+}
+
+fn shader_of(s: &RasterState, layout: &Layout) -> Shader {
+    let units = s.units.iter().filter_map(|unit| {
+        let seamless = s.has(Cap::TextureCubeMapSeamless);
+        let coords = usize::from(layout.tex_coords[unit.unit]?);
+        let texture =
+            Sampled::new(unit.target, &unit.view.params, &unit.view.levels, unit.env.lod_bias, seamless)?;
+        Some(Unit { number: unit.unit, env: unit.env, texture, coords })
+    });
+    Shader {
+        units: units.collect(),
+        secondary: layout.secondary.map(usize::from).filter(|_| s.color_sum),
+        fog: layout
+            .fog
+            .filter(|_| s.has(Cap::Fog))
+            .map(|coord| FogPlan { state: s.fog, coord: usize::from(coord) }),
+    }
+}
