@@ -190,6 +190,16 @@ impl Context {
         self.client.memory = Some(memory);
     }
 
+    /// What a pointer of the C interface means: an offset in the buffer bound to `target`, `ARRAY_BUFFER` or
+    /// `ELEMENT_ARRAY_BUFFER`, else an address.
+    #[must_use]
+    pub fn pointer_source(&self, target: Enum, pointer: usize) -> ArraySource {
+        match self.bound_buffer(target) {
+            Ok(_) => ArraySource::Buffer(pointer),
+            Err(_) => ArraySource::Address(pointer),
+        }
+    }
+
     /// `glGenBuffers`: unused names.
     pub fn gen_buffers(&mut self, n: i32) -> Vec<u32> {
         self.ask(|c| {

@@ -48,6 +48,10 @@ pub(crate) struct Shared {
     pub(crate) renderbuffers: crate::framebuffer::Renderbuffers,
 }
 
+/// What contexts share that were made with the same group.
+#[derive(Clone, Debug, Default)]
+pub struct ShareGroup(Arc<Mutex<Shared>>);
+
 /// An OpenGL 1.5 of its own.
 ///
 /// Commands are methods with the names of the specification in Rust's spelling; numbers of all types
@@ -96,6 +100,12 @@ impl Context {
     #[must_use]
     pub fn sharing(config: Config, other: &Self) -> Self {
         Self::with_shared(config, Arc::clone(&other.shared))
+    }
+
+    /// A context that shares those with all contexts of a group.
+    #[must_use]
+    pub fn in_group(config: Config, group: &ShareGroup) -> Self {
+        Self::with_shared(config, Arc::clone(&group.0))
     }
 
     fn with_shared(config: Config, shared: Arc<Mutex<Shared>>) -> Self {

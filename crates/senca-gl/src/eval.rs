@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Targets of maps: `COLOR_4`, `INDEX`, `NORMAL`, `TEXTURE_COORD_1` to `4`, `VERTEX_3`, `VERTEX_4`.
 pub(crate) const TARGETS: usize = 9;
 /// Greatest order of a map.
-pub(crate) const MAX_ORDER: usize = 32;
+pub const MAX_ORDER: usize = 32;
 /// Components of the targets.
 const COMPONENTS: [usize; TARGETS] = [4, 1, 3, 1, 2, 3, 4, 3, 4];
 const COLOR: usize = 0;

@@ -54,18 +54,20 @@ mod select;
 mod state;
 mod texture;
 mod vertex;
+mod window;
 
 /// A name of the specification, one of [`gl`]; or bits of a mask.
 pub type Enum = u32;
 
 pub use arrays::{ArraySource, ClientMemory};
 pub use component::Component;
-pub use context::{Config, Context};
+pub use context::{Config, Context, ShareGroup};
 pub use debug::{DebugCallback, DebugMessage};
 pub use error::Error;
-pub use eval::map_components;
+pub use eval::{MAX_ORDER as MAX_EVAL_ORDER, map_components};
 pub use get::{EXTENSIONS, Values};
 pub use list::list_name_bytes;
+pub use window::{Colors, max_window_side};
 
 #[cfg(test)]
 mod tests;

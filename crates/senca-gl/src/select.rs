@@ -126,6 +126,12 @@ impl Context {
         })
     }
 
+    /// `RENDER`, `SELECT` or `FEEDBACK`: what becomes of primitives now.
+    #[must_use]
+    pub fn current_render_mode(&self) -> Enum {
+        self.render_mode.mode
+    }
+
     /// `glSelectBuffer`: how many words selection may write.
     pub fn select_buffer(&mut self, size: i32) {
         self.outside(|c| match usize::try_from(size) {

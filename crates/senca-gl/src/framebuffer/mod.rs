@@ -43,6 +43,10 @@ impl Framebuffers {
         true
     }
 
+    pub(crate) fn window_depths(&self) -> &[f32] {
+        &self.depth
+    }
+
     pub(crate) fn save_buffers(&self) -> SavedBuffers {
         SavedBuffers {}
     }

@@ -1,0 +1,93 @@
+//! What the tables of commands are written with.
+
+use std::ffi::c_void;
+
+/// A function of the library that programs can ask for by name.
+pub(crate) struct Entry {
+    pub(crate) name: &'static str,
+    pub(crate) address: *const c_void,
+    /// Types of parameters and result, as in the table.
+    #[cfg(test)]
+    pub(crate) signature: &'static str,
+}
+
+// SAFETY: the address is that of a function, which all threads may call; nothing is written through it.
+unsafe impl Sync for Entry {}
+
+/// An answer of a command, and what it is when there is no context to ask.
+pub(crate) trait Answer {
+    const NONE: Self;
+}
+
+macro_rules! answers {
+    ($($t:ty: $none:expr),*) => {$( impl Answer for $t { const NONE: Self = $none; } )*};
+}
+answers!((): (), u8: 0, i32: 0, u32: 0, *const u8: std::ptr::null(), *mut c_void: std::ptr::null_mut());
+
+/// Defines a C function that works on the current context.
+macro_rules! define {
+    ($c:ident $name:ident ($($arg:ident: $t:ty),* $(,)?) ($($r:ty)?) $body:expr) => {
+        #[unsafe(no_mangle)]
+        unsafe extern "C" fn $name($($arg: $t),*) $(-> $r)? {
+            $crate::current::with(|$c| $body)
+        }
+
+        #[cfg(test)]
+        mod $name {
+            pub(super) const SIGNATURE: &str = concat!($(stringify!($t), ";",)* "->", $(stringify!($r))?);
+        }
+    };
+}
+
+/// The table of entries of functions defined before.
+macro_rules! entries {
+    ($table:ident: $($name:ident)*) => {
+        pub(crate) static $table: &[$crate::table::Entry] = &[$(
+            $crate::table::Entry {
+                name: stringify!($name),
+                address: $name as *const std::ffi::c_void,
+                #[cfg(test)]
+                signature: $name::SIGNATURE,
+            },
+        )*];
+    };
+}
+
+/// Commands as C has them: names of the same command, parameters, and what it does with the current context.
+macro_rules! commands {
+    ($table:ident, $c:ident: $( $($name:ident)|+ $params:tt $(-> $r:ty)? $body:block )*) => {
+        $( commands!(@names $c [$($name)+] $params ($($r)?) $body); )*
+        entries!($table: $($($name)+)*);
+    };
+    (@names $c:ident [$($name:ident)+] $params:tt $result:tt $body:block) => {
+        $( define!($c $name $params $result $body); )+
+    };
+}
+
+/// Commands that take numbers of several types, one by one and from memory: the method of the context, names
+/// of the numbers, how many; then type by type the names of both forms. What is before a `;` comes first in both.
+macro_rules! components {
+    ($table:ident: $(
+        $method:ident($($first:ident;)? $($arg:ident)+) x $n:literal {
+            $( $t:ty: $($scalar:ident)|+, $($vector:ident)|+; )+
+        }
+    )+) => {
+        $( components!(@rows $method [$($first)?] ($($arg)+) $n $( {$t: [$($scalar)+] [$($vector)+]} )+); )+
+        entries!($table: $($( $($scalar)+ $($vector)+ )+)+);
+    };
+    (@rows $method:ident $first:tt $args:tt $n:literal $($row:tt)+) => {
+        $( components!(@row $method $first $args $n $row); )+
+    };
+    (@row $method:ident $first:tt $args:tt $n:literal {$t:ty: [$($scalar:ident)+] [$($vector:ident)+]}) => {
+        $( components!(@scalar $method $first $args $t, $scalar); )+
+        $( components!(@vector $method $first $n $t, $vector); )+
+    };
+    (@scalar $method:ident [$($first:ident)?] ($($arg:ident)+) $t:ty, $name:ident) => {
+        define!(c $name ($($first: u32,)? $($arg: $t),+) () c.$method($($first,)? [$($arg),+]));
+    };
+    (@vector $method:ident [$($first:ident)?] $n:literal $t:ty, $name:ident) => {
+        define!(c $name ($($first: u32,)? v: In<$t>) () if let Some(v) = v.array::<$n>() {
+            c.$method($($first,)? v)
+        });
+    };
+}
