@@ -30,8 +30,15 @@ pub(crate) type Few<T> = SmallVec<[T; 16]>;
 
 /// What a command reads; may be NULL.
 #[repr(transparent)]
-#[derive(Clone, Copy)]
 pub(crate) struct In<T>(*const T);
+
+impl<T> Clone for In<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for In<T> {}
 
 impl<T> In<T> {
     pub(crate) fn is_null(self) -> bool {
@@ -41,6 +48,11 @@ impl<T> In<T> {
     /// Where it is.
     pub(crate) fn address(self) -> usize {
         self.0.expose_provenance()
+    }
+
+    /// What is at an address that was a pointer of the program's before.
+    pub(crate) fn at(address: usize) -> Self {
+        Self(std::ptr::with_exposed_provenance(address))
     }
 
     /// `len` bytes; nothing when there are none or the pointer is NULL.
@@ -108,8 +120,15 @@ impl In<u8> {
 
 /// What a command writes; may be NULL, then nothing is written.
 #[repr(transparent)]
-#[derive(Clone, Copy)]
 pub(crate) struct Out<T>(*mut T);
+
+impl<T> Clone for Out<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Out<T> {}
 
 impl<T> Out<T> {
     pub(crate) fn is_null(self) -> bool {

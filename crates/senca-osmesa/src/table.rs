@@ -55,9 +55,11 @@ macro_rules! entries {
 
 /// Commands as C has them: names of the same command, parameters, and what it does with the current context.
 macro_rules! commands {
-    ($table:ident, $c:ident: $( $($name:ident)|+ $params:tt $(-> $r:ty)? $body:block )*) => {
-        $( commands!(@names $c [$($name)+] $params ($($r)?) $body); )*
-        entries!($table: $($($name)+)*);
+    ($table:ident, $c:ident: $(
+        $name:ident $(| $also:ident)* ($($arg:ident: $t:ty),* $(,)?) $(-> $r:ty)? $body:block
+    )*) => {
+        $( commands!(@names $c [$name $($also)*] ($($arg: $t),*) ($($r)?) $body); )*
+        entries!($table: $($name $($also)*)*);
     };
     (@names $c:ident [$($name:ident)+] $params:tt $result:tt $body:block) => {
         $( define!($c $name $params $result $body); )+
@@ -65,15 +67,17 @@ macro_rules! commands {
 }
 
 /// Commands that take numbers of several types, one by one and from memory: the method of the context, names
-/// of the numbers, how many; then type by type the names of both forms. What is before a `;` comes first in both.
+/// of the numbers, how many; then type by type the names of both forms. What is in `[]` comes first in both.
 macro_rules! components {
     ($table:ident: $(
-        $method:ident($($first:ident;)? $($arg:ident)+) x $n:literal {
-            $( $t:ty: $($scalar:ident)|+, $($vector:ident)|+; )+
+        $method:ident $([$first:ident])? ($($arg:ident)+) x $n:literal {
+            $( $t:ty: $scalar:ident $(| $scalars:ident)*, $vector:ident $(| $vectors:ident)*; )+
         }
     )+) => {
-        $( components!(@rows $method [$($first)?] ($($arg)+) $n $( {$t: [$($scalar)+] [$($vector)+]} )+); )+
-        entries!($table: $($( $($scalar)+ $($vector)+ )+)+);
+        $( components!(@rows $method [$($first)?] ($($arg)+) $n $(
+            {$t: [$scalar $($scalars)*] [$vector $($vectors)*]}
+        )+); )+
+        entries!($table: $($( $scalar $($scalars)* $vector $($vectors)* )+)+);
     };
     (@rows $method:ident $first:tt $args:tt $n:literal $($row:tt)+) => {
         $( components!(@row $method $first $args $n $row); )+

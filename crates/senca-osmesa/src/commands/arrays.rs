@@ -108,7 +108,8 @@ commands! { COMMANDS, c:
             None => {}
         }
     }
-    glGetBufferSubData | glGetBufferSubDataARB(target: u32, offset: isize, size: isize, mut bytes: Out<c_void>) {
+    glGetBufferSubData | glGetBufferSubDataARB(target: u32, offset: isize, size: isize, bytes: Out<c_void>) {
+        let mut bytes = bytes;
         match usize::try_from(size) {
             Ok(size) => if let Some(bytes) = bytes.bytes(size) { c.get_buffer_sub_data(target, offset, bytes) },
             Err(_) => c.raise(gl::INVALID_VALUE),

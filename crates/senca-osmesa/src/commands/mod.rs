@@ -3,9 +3,11 @@
 mod arrays;
 mod debug;
 mod evaluators;
+mod get;
 mod lists;
 mod matrix;
 mod parameters;
+mod pixels;
 mod select;
 mod state;
 mod vertex;
@@ -24,9 +26,11 @@ pub(crate) fn tables() -> impl Iterator<Item = &'static Entry> {
         arrays::COMMANDS,
         debug::COMMANDS,
         evaluators::COMMANDS,
+        get::COMMANDS,
         lists::COMMANDS,
         matrix::COMMANDS,
         parameters::COMMANDS,
+        pixels::COMMANDS,
         select::COMMANDS,
         state::COMMANDS,
         vertex::COMPONENTS,

@@ -82,25 +82,25 @@ components! { COMPONENTS:
         f32: glTexCoord4f, glTexCoord4fv;
         f64: glTexCoord4d, glTexCoord4dv;
     }
-    multi_tex_coord(unit; s) x 1 {
+    multi_tex_coord[unit](s) x 1 {
         i16: glMultiTexCoord1s | glMultiTexCoord1sARB, glMultiTexCoord1sv | glMultiTexCoord1svARB;
         i32: glMultiTexCoord1i | glMultiTexCoord1iARB, glMultiTexCoord1iv | glMultiTexCoord1ivARB;
         f32: glMultiTexCoord1f | glMultiTexCoord1fARB, glMultiTexCoord1fv | glMultiTexCoord1fvARB;
         f64: glMultiTexCoord1d | glMultiTexCoord1dARB, glMultiTexCoord1dv | glMultiTexCoord1dvARB;
     }
-    multi_tex_coord(unit; s t) x 2 {
+    multi_tex_coord[unit](s t) x 2 {
         i16: glMultiTexCoord2s | glMultiTexCoord2sARB, glMultiTexCoord2sv | glMultiTexCoord2svARB;
         i32: glMultiTexCoord2i | glMultiTexCoord2iARB, glMultiTexCoord2iv | glMultiTexCoord2ivARB;
         f32: glMultiTexCoord2f | glMultiTexCoord2fARB, glMultiTexCoord2fv | glMultiTexCoord2fvARB;
         f64: glMultiTexCoord2d | glMultiTexCoord2dARB, glMultiTexCoord2dv | glMultiTexCoord2dvARB;
     }
-    multi_tex_coord(unit; s t r) x 3 {
+    multi_tex_coord[unit](s t r) x 3 {
         i16: glMultiTexCoord3s | glMultiTexCoord3sARB, glMultiTexCoord3sv | glMultiTexCoord3svARB;
         i32: glMultiTexCoord3i | glMultiTexCoord3iARB, glMultiTexCoord3iv | glMultiTexCoord3ivARB;
         f32: glMultiTexCoord3f | glMultiTexCoord3fARB, glMultiTexCoord3fv | glMultiTexCoord3fvARB;
         f64: glMultiTexCoord3d | glMultiTexCoord3dARB, glMultiTexCoord3dv | glMultiTexCoord3dvARB;
     }
-    multi_tex_coord(unit; s t r q) x 4 {
+    multi_tex_coord[unit](s t r q) x 4 {
         i16: glMultiTexCoord4s | glMultiTexCoord4sARB, glMultiTexCoord4sv | glMultiTexCoord4svARB;
         i32: glMultiTexCoord4i | glMultiTexCoord4iARB, glMultiTexCoord4iv | glMultiTexCoord4ivARB;
         f32: glMultiTexCoord4f | glMultiTexCoord4fARB, glMultiTexCoord4fv | glMultiTexCoord4fvARB;
