@@ -24,8 +24,6 @@
 //! Source of all rules: Segal, Akeley: The OpenGL Graphics System, version 1.5 (2003), and the
 //! specifications of the extensions.
 
-#![expect(dead_code, reason = "state that commands of pixels and textures read is here before they are")]
-
 mod arrays;
 mod assemble;
 mod attrib;
@@ -33,6 +31,7 @@ mod commands;
 mod component;
 mod context;
 mod debug;
+mod drawpix;
 mod error;
 mod eval;
 mod fragment;

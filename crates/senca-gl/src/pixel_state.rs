@@ -32,6 +32,13 @@ pub(crate) struct PixelState {
     pub(crate) maps: PixelMaps,
 }
 
+impl PixelState {
+    /// What happens to pixels on the way.
+    pub(crate) fn transfer(&self) -> crate::pixel::Transfer<'_> {
+        crate::pixel::Transfer { modes: &self.transfer.modes, maps: &self.maps }
+    }
+}
+
 impl Context {
     /// `glPixelStore`. Not recorded in lists.
     pub fn pixel_store(&mut self, name: Enum, value: i32) {

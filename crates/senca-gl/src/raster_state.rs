@@ -70,6 +70,7 @@ impl RasterState {
     fn new(context: &Context) -> Self {
         let s = &context.state;
         let lit = s.enabled.has(Cap::Lighting);
+        let [r, g, b, a] = s.color.mask;
         let units = (0..TEXTURE_UNITS).filter_map(|unit| {
             let (target, view) = context.texture_view(unit)?;
             Some(UnitState { unit, env: s.texturing.units[unit].env, target, view })
@@ -83,7 +84,13 @@ impl RasterState {
             fog: s.fog,
             depth: DepthBuffer { clear: 0.0, ..s.depth },
             stencil: StencilBuffer { clear: 0, ..s.stencil },
-            color: ColorBuffer { clear_color: [0.0; 4], clear_index: 0.0, ..s.color },
+            color: ColorBuffer {
+                clear_color: [0.0; 4],
+                clear_index: 0.0,
+                // What has no alpha keeps one of 1.
+                mask: [r, g, b, a && context.framebuffers.draws_alpha()],
+                ..s.color
+            },
             viewport: s.viewport,
             scissor: s.scissor,
             multisample: s.multisample,
@@ -182,6 +189,32 @@ impl Context {
         if self.batch.kind != kind || self.batch.layout != layout || self.batch.positions.len() >= FULL {
             self.flush_batch();
             (self.batch.kind, self.batch.layout) = (kind, layout);
+        }
+        self.batch.positions.len() as u32
+    }
+
+    /// Makes sure that fragments of pixels and bitmaps can be put into the batch, as points; returns the number of
+    /// the next. They are drawn to the whole framebuffer, whose size is given, and nothing of points applies to
+    /// them; depths are those of the window.
+    pub(crate) fn begin_pixel_batch(&mut self, layout: Layout, [width, height]: [i32; 2]) -> u32 {
+        let mut state = RasterState::new(self);
+        state.viewport = Viewport { rect: [0, 0, width, height], near: 0.0, far: 1.0 };
+        state.point = Point::default();
+        state.clip_origin = gl::LOWER_LEFT;
+        state.enabled.set(Cap::PointSmooth, 0, false);
+        state.enabled.set(Cap::Multisample, 0, false);
+        // What is drawn next has a state of its own again.
+        self.raster_changed = true;
+        if state != self.batch.state {
+            self.flush_batch();
+            self.batch.state = state;
+        }
+        if self.batch.kind != Kind::Points
+            || self.batch.layout != layout
+            || self.batch.positions.len() >= FULL
+        {
+            self.flush_batch();
+            (self.batch.kind, self.batch.layout) = (Kind::Points, layout);
         }
         self.batch.positions.len() as u32
     }

@@ -28,13 +28,10 @@ impl Context {
     /// The colours that the window shows, of as many pixels as it has; rows without space between.
     #[must_use]
     pub fn window_colors(&self) -> Colors<'_> {
-        Colors::Bytes(self.window_pixels())
-    }
-
-    /// The depths of the window, from 0 to 1, the lowest row first. Empty when it has none.
-    #[must_use]
-    pub fn window_depths(&self) -> &[f32] {
-        self.framebuffers.window_depths()
+        match self.window_floats() {
+            [] => Colors::Bytes(self.window_pixels()),
+            floats => Colors::Floats(floats),
+        }
     }
 
     /// Whether colours of the window are kept as floating point.

@@ -18,19 +18,23 @@ const DEPTH_UNIT: f32 = 1.0 / (1 << 24) as f32;
 impl Context {
     /// Draws a batch; returns how many samples passed.
     pub(crate) fn draw_batch(&mut self, batch: &Batch) -> u64 {
-        let Some(mut target) = self.framebuffers.target() else { return 0 };
-        draw(&mut self.rasterizer, &mut target, batch).passed
+        let mut planes = self.framebuffers.take_planes();
+        let (rasterizer, multisample) = (&mut self.rasterizer, batch.state.has(Cap::Multisample));
+        let passed =
+            planes.draw(multisample, |mut target, side| draw(rasterizer, &mut target, batch, side).passed);
+        self.framebuffers.put_back(planes);
+        passed
     }
 }
 
-/// Draws a batch into a target.
-fn draw(rasterizer: &mut TiledRasterizer, target: &mut Target<'_>, batch: &Batch) -> Counters {
+/// Draws a batch into a target that has a square of `side` samples along each side of a pixel.
+fn draw(rasterizer: &mut TiledRasterizer, target: &mut Target<'_>, batch: &Batch, side: u32) -> Counters {
     let s = &batch.state;
     let both_culled = s.has(Cap::CullFace) && s.polygon.cull_face == gl::FRONT_AND_BACK;
     if both_culled && batch.kind == Kind::Triangles {
         return Counters::default();
     }
-    let mut state = raster_state(batch);
+    let mut state = in_samples(raster_state(batch), side);
     let stride = usize::from(batch.layout.stride);
     let sized = with_sizes(batch, stride);
     let (varyings, stride) = match &sized {
@@ -115,6 +119,31 @@ fn raster_state(batch: &Batch) -> State {
         }),
         antialias: s.has(smooth),
         ..State::default()
+    }
+}
+
+/// The state in units of samples instead of pixels, where there are several along each side of a pixel.
+fn in_samples(state: State, side: u32) -> State {
+    let factor = side as f32;
+    let scaled = |v: Viewport| Viewport {
+        x: v.x * factor,
+        y: v.y * factor,
+        width: v.width * factor,
+        height: v.height * factor,
+    };
+    let rect = |r: Rect| Rect {
+        x: r.x.saturating_mul(side as i32),
+        y: r.y.saturating_mul(side as i32),
+        width: r.width.saturating_mul(side),
+        height: r.height.saturating_mul(side),
+    };
+    State {
+        viewport: state.viewport.map(scaled),
+        scissor: state.scissor.map(rect),
+        depth_bias: DepthBias { slope: state.depth_bias.slope * factor, ..state.depth_bias },
+        line_width: state.line_width * factor,
+        point_size: state.point_size * factor,
+        ..state
     }
 }
 

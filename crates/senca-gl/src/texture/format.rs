@@ -4,7 +4,7 @@ use crate::gl;
 
 /// Which components an image has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BaseFormat {
+pub(crate) enum BaseFormat {
     /// Alpha.
     Alpha,
     /// Luminance.
@@ -27,8 +27,7 @@ pub enum BaseFormat {
 
 impl BaseFormat {
     /// Token of the format.
-    #[must_use]
-    pub fn token(self) -> u32 {
+    pub(crate) fn token(self) -> u32 {
         match self {
             Self::Alpha => gl::ALPHA,
             Self::Luminance => gl::LUMINANCE,
@@ -43,26 +42,22 @@ impl BaseFormat {
     }
 
     /// Whether texels are colours.
-    #[must_use]
-    pub fn is_color(self) -> bool {
+    pub(crate) fn is_color(self) -> bool {
         !self.has_depth() && self != Self::Stencil
     }
 
     /// Whether texels have a depth.
-    #[must_use]
-    pub fn has_depth(self) -> bool {
+    pub(crate) fn has_depth(self) -> bool {
         matches!(self, Self::Depth | Self::DepthStencil)
     }
 
     /// Whether texels have a stencil value.
-    #[must_use]
-    pub fn has_stencil(self) -> bool {
+    pub(crate) fn has_stencil(self) -> bool {
         matches!(self, Self::Stencil | Self::DepthStencil)
     }
 
     /// Whether texels have an alpha of their own.
-    #[must_use]
-    pub fn has_alpha(self) -> bool {
+    pub(crate) fn has_alpha(self) -> bool {
         matches!(self, Self::Rgba | Self::Alpha | Self::LuminanceAlpha | Self::Intensity)
     }
 
@@ -70,8 +65,7 @@ impl BaseFormat {
     ///
     /// Source: OpenGL 1.5, tables 3.15 and 3.20.
     #[inline]
-    #[must_use]
-    pub fn stored<T: Copy + Default>(self, [r, g, b, a]: [T; 4], one: T) -> [T; 4] {
+    pub(crate) fn stored<T: Copy + Default>(self, [r, g, b, a]: [T; 4], one: T) -> [T; 4] {
         let zero = T::default();
         match self {
             Self::Alpha => [zero, zero, zero, a],
@@ -87,8 +81,7 @@ impl BaseFormat {
     ///
     /// Source: OpenGL 1.5, table 6.1.
     #[inline]
-    #[must_use]
-    pub fn returned<T: Copy + Default>(self, [r, g, b, a]: [T; 4], one: T) -> [T; 4] {
+    pub(crate) fn returned<T: Copy + Default>(self, [r, g, b, a]: [T; 4], one: T) -> [T; 4] {
         let zero = T::default();
         match self {
             Self::Luminance | Self::Intensity => [r, zero, zero, one],
@@ -100,7 +93,7 @@ impl BaseFormat {
 
 /// What texels are kept in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum StorageKind {
+pub(crate) enum StorageKind {
     /// Four bytes.
     Rgba8,
     /// Four floats in [0, 1]: for components of more than 8 bits.
@@ -115,8 +108,7 @@ pub enum StorageKind {
 
 impl StorageKind {
     /// Bytes of a texel.
-    #[must_use]
-    pub fn texel_bytes(self) -> usize {
+    pub(crate) fn texel_bytes(self) -> usize {
         match self {
             Self::Rgba8 | Self::Depth => 4,
             Self::Rgba32F => 16,
@@ -128,7 +120,7 @@ impl StorageKind {
 
 /// An internal format as it was asked for, and what it comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct InternalFormat {
+pub(crate) struct InternalFormat {
     token: u32,
     base: BaseFormat,
     storage: StorageKind,
@@ -153,15 +145,13 @@ const UNCOMPRESSED: [(u32, u32); 10] = [
 
 impl InternalFormat {
     /// Format of a token, or of the number of components 1 to 4, as texture images take it; `None` for others.
-    #[must_use]
-    pub fn for_texture(asked: u32) -> Option<Self> {
+    pub(crate) fn for_texture(asked: u32) -> Option<Self> {
         let token = UNCOMPRESSED.iter().find(|pair| pair.0 == asked).map_or(asked, |pair| pair.1);
         Self::color(token).or_else(|| Self::with_depth(token))
     }
 
     /// Format of a token as renderbuffers take it: colours that can be drawn to, depths and stencil values.
-    #[must_use]
-    pub fn for_renderbuffer(token: u32) -> Option<Self> {
+    pub(crate) fn for_renderbuffer(token: u32) -> Option<Self> {
         if token <= 4 {
             return None;
         }
@@ -244,45 +234,38 @@ impl InternalFormat {
     }
 
     /// The format as queries tell it: as asked for, but for compressed formats their uncompressed ones.
-    #[must_use]
-    pub fn token(self) -> u32 {
+    pub(crate) fn token(self) -> u32 {
         self.token
     }
 
     /// Components.
-    #[must_use]
-    pub fn base(self) -> BaseFormat {
+    pub(crate) fn base(self) -> BaseFormat {
         self.base
     }
 
     /// What texels are kept in.
-    #[must_use]
-    pub fn storage(self) -> StorageKind {
+    pub(crate) fn storage(self) -> StorageKind {
         self.storage
     }
 
     /// Whether red, green and blue are encoded by the curve of sRGB.
-    #[must_use]
-    pub fn is_srgb(self) -> bool {
+    pub(crate) fn is_srgb(self) -> bool {
         self.is_srgb
     }
 
     /// Whether depths are floating-point numbers by name.
-    #[must_use]
-    pub fn is_float(self) -> bool {
+    pub(crate) fn is_float(self) -> bool {
         matches!(self.token, gl::DEPTH_COMPONENT32F | gl::DEPTH32F_STENCIL8)
     }
 
     /// Whether it can be the colour of a framebuffer: red, green and blue, with or without alpha.
-    #[must_use]
-    pub fn is_color_renderable(self) -> bool {
+    pub(crate) fn is_color_renderable(self) -> bool {
         matches!(self.base, BaseFormat::Rgb | BaseFormat::Rgba)
     }
 
     /// Bits of a component, as the tokens of `GetTexLevelParameter` and `GetRenderbufferParameter` ask for them
     /// (`TEXTURE_RED_SIZE`, `RENDERBUFFER_RED_SIZE` ...); `None` for another token.
-    #[must_use]
-    pub fn bits(self, pname: u32) -> Option<u32> {
+    pub(crate) fn bits(self, pname: u32) -> Option<u32> {
         use BaseFormat::{Alpha, Intensity, Luminance, LuminanceAlpha, Rgb, Rgba};
         let channel = if self.storage == StorageKind::Rgba32F { 16 } else { 8 };
         let if_one_of = |bases: &[BaseFormat]| if bases.contains(&self.base) { channel } else { 0 };

@@ -20,29 +20,29 @@ const BATCH: usize = 128;
 
 /// An image of a texture. A missing image has no texels and sizes of 0.
 #[derive(Clone, Debug)]
-pub struct TexImage {
+pub(crate) struct TexImage {
     /// Texels in x, with both borders.
-    pub width: u32,
+    pub(crate) width: u32,
     /// Texels in y, with both borders; 1 for one dimension.
-    pub height: u32,
+    pub(crate) height: u32,
     /// Texels in z, with both borders; 1 for one and two dimensions.
-    pub depth: u32,
+    pub(crate) depth: u32,
     /// Width of the border, 0 or 1 texel.
-    pub border: u32,
+    pub(crate) border: u32,
     /// What the image keeps.
-    pub format: InternalFormat,
+    pub(crate) format: InternalFormat,
     /// The texels, `width * height * depth` of them. Draws that wait hold on to the same memory; writing then
     /// makes a copy first.
-    pub texels: Arc<Texels>,
+    pub(crate) texels: Arc<Texels>,
 }
 
 /// Pixels on their way into a texture.
 #[derive(Clone, Copy, Debug)]
-pub struct Upload<'a> {
+pub(crate) struct Upload<'a> {
     /// The pixels in client memory.
-    pub source: PixelSource<'a>,
+    pub(crate) source: PixelSource<'a>,
     /// What happens to them.
-    pub transfer: Transfer<'a>,
+    pub(crate) transfer: Transfer<'a>,
 }
 
 impl TexImage {
@@ -50,7 +50,7 @@ impl TexImage {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
-    pub fn new(format: InternalFormat, size: [u32; 3], border: u32) -> Result<Self, Error> {
+    pub(crate) fn new(format: InternalFormat, size: [u32; 3], border: u32) -> Result<Self, Error> {
         let [width, height, depth] = size;
         let count = size.iter().try_fold(1_usize, |n, &side| n.checked_mul(side as usize));
         let texels = count.and_then(|count| Texels::new(format, count)).ok_or(Error::OutOfMemory)?;
@@ -58,22 +58,19 @@ impl TexImage {
     }
 
     /// Width, height and depth with borders.
-    #[must_use]
-    pub fn size(&self) -> [u32; 3] {
+    pub(crate) fn size(&self) -> [u32; 3] {
         [self.width, self.height, self.depth]
     }
 
     /// Whether there are as many texels as the size says, and at least one. While a texture is being drawn to,
     /// they are not here.
-    #[must_use]
-    pub fn is_present(&self) -> bool {
+    pub(crate) fn is_present(&self) -> bool {
         let count = self.width as usize * self.height as usize * self.depth as usize;
         count > 0 && self.texels.len() == count
     }
 
     /// Index of a texel, counted from the corner of the border.
-    #[must_use]
-    pub fn index(&self, x: usize, y: usize, z: usize) -> usize {
+    pub(crate) fn index(&self, x: usize, y: usize, z: usize) -> usize {
         (z * self.height as usize + y) * self.width as usize + x
     }
 
@@ -82,7 +79,7 @@ impl TexImage {
     /// # Errors
     /// [`Error::InvalidEnum`] for stencil values alone; [`Error::InvalidOperation`] for colours in place of
     /// depths or the other way round.
-    pub fn check_pixels(base: BaseFormat, layout: PixelLayout) -> Result<(), Error> {
+    pub(crate) fn check_pixels(base: BaseFormat, layout: PixelLayout) -> Result<(), Error> {
         let format = layout.format();
         let pixels_have_depth = matches!(format, PixelFormat::DepthComponent | PixelFormat::DepthStencil);
         if format == PixelFormat::StencilIndex {
@@ -96,7 +93,7 @@ impl TexImage {
 
     /// Puts pixels over texels from `corner` on, which counts from the corner of the border. The rectangle or
     /// box must lie inside the image.
-    pub fn write(&mut self, corner: [u32; 3], upload: &Upload<'_>) {
+    pub(crate) fn write(&mut self, corner: [u32; 3], upload: &Upload<'_>) {
         let [x0, y0, z0] = corner.map(|c| c as usize);
         let [w, h, d] = upload.source.size().map(|c| c as usize);
         if w == 0 || h == 0 || d == 0 || !self.is_present() {
@@ -140,7 +137,7 @@ impl TexImage {
     }
 
     /// Puts a row of colours, already transferred, over texels from `corner` on.
-    pub fn write_colors(&mut self, corner: [u32; 3], row: &[[f32; 4]]) {
+    pub(crate) fn write_colors(&mut self, corner: [u32; 3], row: &[[f32; 4]]) {
         let at = self.index(corner[0] as usize, corner[1] as usize, corner[2] as usize);
         let base = self.format.base();
         match Arc::make_mut(&mut self.texels) {
@@ -159,7 +156,7 @@ impl TexImage {
     }
 
     /// Puts a row of depths, already transferred, over texels from `corner` on.
-    pub fn write_depths(&mut self, corner: [u32; 3], row: &[f32]) {
+    pub(crate) fn write_depths(&mut self, corner: [u32; 3], row: &[f32]) {
         let at = self.index(corner[0] as usize, corner[1] as usize, corner[2] as usize);
         if let Some(depths) = Arc::make_mut(&mut self.texels).depths_mut() {
             depths[at..at + row.len()].copy_from_slice(row);
@@ -167,7 +164,7 @@ impl TexImage {
     }
 
     /// Puts a row of stencil values over texels from `corner` on.
-    pub fn write_stencils(&mut self, corner: [u32; 3], row: &[u8]) {
+    pub(crate) fn write_stencils(&mut self, corner: [u32; 3], row: &[u8]) {
         let at = self.index(corner[0] as usize, corner[1] as usize, corner[2] as usize);
         if let Some(stencils) = Arc::make_mut(&mut self.texels).stencils_mut() {
             stencils[at..at + row.len()].copy_from_slice(row);
@@ -176,7 +173,7 @@ impl TexImage {
 
     /// Writes the whole image, with its border, into client memory, as `GetTexImage` does. The size of `sink`
     /// must be that of the image, and its format one that [`check_pixels`](Self::check_pixels) allows.
-    pub fn read(&self, sink: &mut PixelSink<'_>) {
+    pub(crate) fn read(&self, sink: &mut PixelSink<'_>) {
         if !self.is_present() {
             return;
         }

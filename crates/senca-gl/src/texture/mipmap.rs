@@ -19,7 +19,7 @@ type Taps = Vec<Vec<(usize, f32)>>;
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
-pub fn next_level(image: &TexImage) -> Option<Result<TexImage, Error>> {
+pub(crate) fn next_level(image: &TexImage) -> Option<Result<TexImage, Error>> {
     let size = half_size(image)?;
     Some(TexImage::new(image.format, size, image.border).map(|mut smaller| {
         reduce(image, &mut smaller);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 ///
 /// A name can be in use before it has an object: `Gen*` marks it, the first bind makes the object.
 #[derive(Clone, Debug)]
-pub struct Names<T> {
+pub(crate) struct Names<T> {
     objects: BTreeMap<u32, Option<T>>,
     /// Where the search for a free name begins.
     next: u32,
@@ -20,7 +20,7 @@ impl<T> Default for Names<T> {
 
 impl<T: Clone> Names<T> {
     /// Marks `count` unused names as used.
-    pub fn generate(&mut self, count: usize) -> Vec<u32> {
+    pub(crate) fn generate(&mut self, count: usize) -> Vec<u32> {
         (0..count).map_while(|_| self.reserve()).collect()
     }
 
@@ -41,40 +41,37 @@ impl<T: Clone> Names<T> {
     }
 
     /// Whether the name is in use, with or without an object.
-    #[must_use]
-    pub fn is_used(&self, name: u32) -> bool {
+    pub(crate) fn is_used(&self, name: u32) -> bool {
         self.objects.contains_key(&name)
     }
 
     /// Object of a name.
-    #[must_use]
-    pub fn get(&self, name: u32) -> Option<T> {
+    pub(crate) fn get(&self, name: u32) -> Option<T> {
         self.objects.get(&name)?.clone()
     }
 
     /// Object of a name, by reference.
-    #[must_use]
-    pub fn get_ref(&self, name: u32) -> Option<&T> {
+    pub(crate) fn get_ref(&self, name: u32) -> Option<&T> {
         self.objects.get(&name)?.as_ref()
     }
 
     /// Object of a name, to be changed.
-    pub fn get_mut(&mut self, name: u32) -> Option<&mut T> {
+    pub(crate) fn get_mut(&mut self, name: u32) -> Option<&mut T> {
         self.objects.get_mut(&name)?.as_mut()
     }
 
     /// Object of a name, made by `make` if it has none yet. Any name but 0 may be used.
-    pub fn get_or_insert(&mut self, name: u32, make: impl FnOnce() -> T) -> &mut T {
+    pub(crate) fn get_or_insert(&mut self, name: u32, make: impl FnOnce() -> T) -> &mut T {
         self.objects.entry(name).or_default().get_or_insert_with(make)
     }
 
     /// Frees a name; its object, if it had one.
-    pub fn remove(&mut self, name: u32) -> Option<T> {
+    pub(crate) fn remove(&mut self, name: u32) -> Option<T> {
         self.objects.remove(&name).flatten()
     }
 
     /// All objects with their names, in order of names.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, &T)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, &T)> {
         self.objects.iter().filter_map(|(&name, object)| Some((name, object.as_ref()?)))
     }
 }

@@ -2,140 +2,96 @@
 
 use std::ops::RangeInclusive;
 
-use super::{TexImage, next_level};
+use super::{TexImage, View, next_level};
 use crate::error::Error;
 use crate::gl;
+use crate::state::TexTarget;
 
 /// Largest width and height of textures of one and two dimensions and of cube faces, without border.
-pub const MAX_TEXTURE_SIZE: u32 = 8192;
+pub(crate) const MAX_TEXTURE_SIZE: u32 = 8192;
 
 /// Largest side of textures of three dimensions, without border.
-pub const MAX_3D_TEXTURE_SIZE: u32 = 512;
+pub(crate) const MAX_3D_TEXTURE_SIZE: u32 = 512;
 
 /// Levels of a texture whose longest side has `size` texels.
-#[must_use]
-pub fn levels_of(size: u32) -> u32 {
+pub(crate) fn levels_of(size: u32) -> u32 {
     u32::BITS - size.leading_zeros()
 }
 
-/// What a texture is bound to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum TextureTarget {
-    /// `TEXTURE_1D`.
-    D1,
-    /// `TEXTURE_2D`.
-    D2,
-    /// `TEXTURE_3D`.
-    D3,
-    /// `TEXTURE_CUBE_MAP`.
-    Cube,
-}
-
-impl TextureTarget {
-    /// All targets.
-    pub const ALL: [Self; 4] = [Self::D1, Self::D2, Self::D3, Self::Cube];
-
-    /// Target of a token that binds textures.
-    #[must_use]
-    pub fn from_token(token: u32) -> Option<Self> {
-        Some(match token {
-            gl::TEXTURE_1D => Self::D1,
-            gl::TEXTURE_2D => Self::D2,
-            gl::TEXTURE_3D => Self::D3,
-            gl::TEXTURE_CUBE_MAP => Self::Cube,
-            _ => return None,
-        })
-    }
-
+impl TexTarget {
     /// Target and face of a token that names an image: one of a cube is its face 0 to 5.
-    #[must_use]
-    pub fn from_image_token(token: u32) -> Option<(Self, usize)> {
+    pub(crate) fn from_image_token(token: u32) -> Option<(Self, usize)> {
         match token {
             gl::TEXTURE_CUBE_MAP_POSITIVE_X..=gl::TEXTURE_CUBE_MAP_NEGATIVE_Z => {
                 Some((Self::Cube, (token - gl::TEXTURE_CUBE_MAP_POSITIVE_X) as usize))
             }
             gl::TEXTURE_CUBE_MAP => None,
-            _ => Some((Self::from_token(token)?, 0)),
+            _ => Some((Self::of(token)?, 0)),
         }
     }
 
     /// Target of a token of a proxy.
-    #[must_use]
-    pub fn from_proxy_token(token: u32) -> Option<Self> {
+    pub(crate) fn from_proxy_token(token: u32) -> Option<Self> {
         Some(match token {
-            gl::PROXY_TEXTURE_1D => Self::D1,
-            gl::PROXY_TEXTURE_2D => Self::D2,
-            gl::PROXY_TEXTURE_3D => Self::D3,
+            gl::PROXY_TEXTURE_1D => Self::One,
+            gl::PROXY_TEXTURE_2D => Self::Two,
+            gl::PROXY_TEXTURE_3D => Self::Three,
             gl::PROXY_TEXTURE_CUBE_MAP => Self::Cube,
             _ => return None,
         })
     }
 
-    /// Token that binds textures.
-    #[must_use]
-    pub fn token(self) -> u32 {
-        match self {
-            Self::D1 => gl::TEXTURE_1D,
-            Self::D2 => gl::TEXTURE_2D,
-            Self::D3 => gl::TEXTURE_3D,
-            Self::Cube => gl::TEXTURE_CUBE_MAP,
-        }
-    }
-
     /// Dimensions of an image: 1 to 3.
-    #[must_use]
-    pub fn dimensions(self) -> usize {
+    pub(crate) fn dimensions(self) -> usize {
         match self {
-            Self::D1 => 1,
-            Self::D2 | Self::Cube => 2,
-            Self::D3 => 3,
+            Self::One => 1,
+            Self::Two | Self::Cube => 2,
+            Self::Three => 3,
         }
     }
 
     /// Images of a level: 6 of a cube, else 1.
-    #[must_use]
-    pub fn faces(self) -> usize {
+    pub(crate) fn faces(self) -> usize {
         if self == Self::Cube { 6 } else { 1 }
     }
 
     /// Largest side of the finest level, without border.
-    #[must_use]
-    pub fn max_size(self) -> u32 {
-        if self == Self::D3 { MAX_3D_TEXTURE_SIZE } else { MAX_TEXTURE_SIZE }
+    pub(crate) fn max_size(self) -> u32 {
+        if self == Self::Three { MAX_3D_TEXTURE_SIZE } else { MAX_TEXTURE_SIZE }
     }
 }
 
 /// Parameters of a texture. Values that are tokens are kept as tokens.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TexParams {
+pub(crate) struct TexParams {
     /// `TEXTURE_MIN_FILTER`. Default `NEAREST_MIPMAP_LINEAR`.
-    pub min_filter: u32,
+    pub(crate) min_filter: u32,
     /// `TEXTURE_MAG_FILTER`. Default `LINEAR`.
-    pub mag_filter: u32,
+    pub(crate) mag_filter: u32,
     /// `TEXTURE_WRAP_S`, `_T`, `_R`. Default `REPEAT`.
-    pub wrap: [u32; 3],
+    pub(crate) wrap: [u32; 3],
     /// `TEXTURE_BORDER_COLOR`, in [0, 1]. Default transparent black.
-    pub border_color: [f32; 4],
+    pub(crate) border_color: [f32; 4],
     /// `TEXTURE_PRIORITY`, in [0, 1]. Default 1. Textures are always resident.
-    pub priority: f32,
+    pub(crate) priority: f32,
     /// `TEXTURE_MIN_LOD`. Default -1000.
-    pub min_lod: f32,
+    pub(crate) min_lod: f32,
     /// `TEXTURE_MAX_LOD`. Default 1000.
-    pub max_lod: f32,
+    pub(crate) max_lod: f32,
     /// `TEXTURE_LOD_BIAS`. Default 0.
-    pub lod_bias: f32,
+    pub(crate) lod_bias: f32,
     /// `TEXTURE_BASE_LEVEL`. Default 0.
-    pub base_level: u32,
+    pub(crate) base_level: u32,
     /// `TEXTURE_MAX_LEVEL`. Default 1000.
-    pub max_level: u32,
+    pub(crate) max_level: u32,
     /// `TEXTURE_COMPARE_MODE`. Default `NONE`.
-    pub compare_mode: u32,
+    pub(crate) compare_mode: u32,
     /// `TEXTURE_COMPARE_FUNC`. Default `LEQUAL`.
-    pub compare_func: u32,
+    pub(crate) compare_func: u32,
     /// `DEPTH_TEXTURE_MODE`. Default `LUMINANCE`.
-    pub depth_mode: u32,
+    pub(crate) depth_mode: u32,
     /// `GENERATE_MIPMAP`. Default false.
-    pub generate_mipmap: bool,
+    pub(crate) generate_mipmap: bool,
 }
 
 impl Default for TexParams {
@@ -191,7 +147,7 @@ impl TexParams {
     /// # Errors
     /// [`Error::InvalidEnum`] for another token, or a value that is not one of its tokens;
     /// [`Error::InvalidValue`] for a negative level.
-    pub fn set(&mut self, pname: u32, values: &[f64]) -> Result<(), Error> {
+    pub(crate) fn set(&mut self, pname: u32, values: &[f64]) -> Result<(), Error> {
         let &[value, ..] = values else { return Err(Error::InvalidValue) };
         match pname {
             gl::TEXTURE_MIN_FILTER => self.min_filter = token(value, &MIN_FILTERS)?,
@@ -224,8 +180,7 @@ impl TexParams {
     }
 
     /// Value of a parameter: four numbers of `TEXTURE_BORDER_COLOR`, else one in front; `None` for another token.
-    #[must_use]
-    pub fn get(&self, pname: u32) -> Option<[f64; 4]> {
+    pub(crate) fn get(&self, pname: u32) -> Option<[f64; 4]> {
         let one = |value: f64| [value, 0.0, 0.0, 0.0];
         Some(match pname {
             gl::TEXTURE_MIN_FILTER => one(f64::from(self.min_filter)),
@@ -250,50 +205,72 @@ impl TexParams {
     }
 
     /// Whether the filter of minification looks at more than one level.
-    #[must_use]
-    pub fn uses_mipmaps(&self) -> bool {
+    pub(crate) fn uses_mipmaps(&self) -> bool {
         !matches!(self.min_filter, gl::NEAREST | gl::LINEAR)
     }
 }
 
 /// A texture object.
 #[derive(Clone, Debug)]
-pub struct Texture {
+pub(crate) struct Texture {
     /// Its name; 0 for the textures that are there from the start.
-    pub name: u32,
+    pub(crate) name: u32,
     /// What it was first bound to.
-    pub target: TextureTarget,
+    pub(crate) target: TexTarget,
     /// Its parameters.
-    pub params: TexParams,
-    /// Counts changes of images and parameters: who keeps something made from the texture compares this number.
-    pub revision: u64,
+    pub(crate) params: TexParams,
+    /// The texture as drawing sees it, until something changes.
+    view: Option<View>,
     /// Levels of each face, from the finest; missing ones at the end are left out.
     faces: Vec<Vec<Option<TexImage>>>,
 }
 
 impl Texture {
     /// A texture without images.
-    #[must_use]
-    pub fn new(name: u32, target: TextureTarget) -> Self {
+    pub(crate) fn new(name: u32, target: TexTarget) -> Self {
         let faces = vec![Vec::new(); target.faces()];
-        Self { name, target, params: TexParams::default(), revision: 0, faces }
+        Self { name, target, params: TexParams::default(), view: None, faces }
     }
 
     /// An image, if there is one.
-    #[must_use]
-    pub fn image(&self, face: usize, level: u32) -> Option<&TexImage> {
+    pub(crate) fn image(&self, face: usize, level: u32) -> Option<&TexImage> {
         self.faces.get(face)?.get(level as usize)?.as_ref()
     }
 
-    /// An image to be changed. Counts as a change.
-    pub fn image_mut(&mut self, face: usize, level: u32) -> Option<&mut TexImage> {
-        self.revision += 1;
+    /// An image to be changed.
+    pub(crate) fn image_mut(&mut self, face: usize, level: u32) -> Option<&mut TexImage> {
+        self.view = None;
         self.faces.get_mut(face)?.get_mut(level as usize)?.as_mut()
     }
 
+    /// Takes an image out of its place.
+    pub(crate) fn take_image(&mut self, face: usize, level: u32) -> Option<TexImage> {
+        self.view = None;
+        self.faces.get_mut(face)?.get_mut(level as usize)?.take()
+    }
+
+    /// Gives all parameters back.
+    pub(crate) fn set_params(&mut self, params: TexParams) {
+        if self.params != params {
+            self.view = None;
+            self.params = params;
+        }
+    }
+
+    /// After a change of an image: makes mipmaps anew, if they follow the base level by themselves.
+    ///
+    /// # Errors
+    /// As [`generate_mipmaps_of`](Self::generate_mipmaps_of).
+    pub(crate) fn follow(&mut self, face: usize, level: u32) -> Result<(), Error> {
+        if self.params.generate_mipmap && level == self.params.base_level {
+            self.generate_mipmaps_of(face)?;
+        }
+        Ok(())
+    }
+
     /// Puts an image in place; one without texels removes what was there.
-    pub fn set_image(&mut self, face: usize, level: u32, image: Option<TexImage>) {
-        self.revision += 1;
+    pub(crate) fn set_image(&mut self, face: usize, level: u32, image: Option<TexImage>) {
+        self.view = None;
         let Some(levels) = self.faces.get_mut(face) else { return };
         let level = level as usize;
         if levels.len() <= level {
@@ -306,9 +283,9 @@ impl Texture {
     ///
     /// # Errors
     /// As [`TexParams::set`].
-    pub fn set_parameter(&mut self, pname: u32, values: &[f64]) -> Result<(), Error> {
+    pub(crate) fn set_parameter(&mut self, pname: u32, values: &[f64]) -> Result<(), Error> {
         self.params.set(pname, values)?;
-        self.revision += 1;
+        self.view = None;
         Ok(())
     }
 
@@ -316,8 +293,7 @@ impl Texture {
     /// as if texturing were off.
     ///
     /// Source: OpenGL 1.5, section 3.8.10.
-    #[must_use]
-    pub fn sampled_levels(&self) -> Option<RangeInclusive<u32>> {
+    pub(crate) fn sampled_levels(&self) -> Option<RangeInclusive<u32>> {
         let base = self.params.base_level;
         if !self.faces_agree() {
             return None;
@@ -343,12 +319,19 @@ impl Texture {
         complete.then_some(base..=last)
     }
 
+    /// The texture as drawing sees it; `None` if it is incomplete.
+    pub(crate) fn view(&mut self) -> Option<View> {
+        if self.view.is_none() {
+            self.view = View::new(self);
+        }
+        self.view.clone()
+    }
+
     /// Whether the images of the base level are there, and for a cube all square and alike.
-    #[must_use]
-    pub fn faces_agree(&self) -> bool {
+    pub(crate) fn faces_agree(&self) -> bool {
         let base = self.params.base_level;
         let Some(first) = self.image(0, base).filter(|image| image.is_present()) else { return false };
-        let square = self.target != TextureTarget::Cube || first.width == first.height;
+        let square = self.target != TexTarget::Cube || first.width == first.height;
         square
             && (1..self.faces.len()).all(|face| {
                 self.image(face, base).is_some_and(|image| {
@@ -372,7 +355,7 @@ impl Texture {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]; the levels made so far stay.
-    pub fn generate_mipmaps(&mut self) -> Result<(), Error> {
+    pub(crate) fn generate_mipmaps(&mut self) -> Result<(), Error> {
         (0..self.faces.len()).try_for_each(|face| self.generate_mipmaps_of(face))
     }
 
@@ -380,7 +363,7 @@ impl Texture {
     ///
     /// # Errors
     /// As [`generate_mipmaps`](Self::generate_mipmaps).
-    pub fn generate_mipmaps_of(&mut self, face: usize) -> Result<(), Error> {
+    pub(crate) fn generate_mipmaps_of(&mut self, face: usize) -> Result<(), Error> {
         let TexParams { base_level, max_level, .. } = self.params;
         for level in base_level..max_level {
             let Some(smaller) = self.image(face, level).and_then(next_level) else { break };
@@ -390,7 +373,7 @@ impl Texture {
     }
 
     /// Images of all levels and faces: face, level, image.
-    pub fn images(&self) -> impl Iterator<Item = (usize, u32, &TexImage)> {
+    pub(crate) fn images(&self) -> impl Iterator<Item = (usize, u32, &TexImage)> {
         self.faces.iter().enumerate().flat_map(|(face, levels)| {
             (0..).zip(levels).filter_map(move |(level, image)| Some((face, level, image.as_ref()?)))
         })

@@ -1,6 +1,7 @@
 use super::*;
 use crate::gl;
 use crate::pixel::{PixelLayout, PixelSink, PixelSource, PixelStore, Transfer};
+use crate::state::TexTarget;
 
 fn format(token: u32) -> InternalFormat {
     InternalFormat::for_texture(token).expect("an internal format")
@@ -316,7 +317,7 @@ proptest::proptest! {
     }
 }
 
-fn texture(target: TextureTarget, min_filter: u32) -> Texture {
+fn texture(target: TexTarget, min_filter: u32) -> Texture {
     let mut texture = Texture::new(1, target);
     texture.set_parameter(gl::TEXTURE_MIN_FILTER, &[f64::from(min_filter)]).expect("a filter");
     texture
@@ -328,7 +329,7 @@ fn blank(size: [u32; 3]) -> Option<TexImage> {
 
 #[test]
 fn a_texture_is_complete_with_all_its_levels() {
-    let mut texture = texture(TextureTarget::D2, gl::LINEAR_MIPMAP_LINEAR);
+    let mut texture = texture(TexTarget::Two, gl::LINEAR_MIPMAP_LINEAR);
     assert_eq!(texture.sampled_levels(), None);
     texture.set_image(0, 0, blank([8, 4, 1]));
     texture.set_image(0, 1, blank([4, 2, 1]));
@@ -352,7 +353,7 @@ fn a_texture_is_complete_with_all_its_levels() {
 
 #[test]
 fn a_cube_needs_six_equal_squares() {
-    let mut texture = texture(TextureTarget::Cube, gl::LINEAR);
+    let mut texture = texture(TexTarget::Cube, gl::LINEAR);
     for face in 0..6 {
         assert_eq!(texture.sampled_levels(), None);
         texture.set_image(face, 0, blank([4, 4, 1]));
@@ -364,7 +365,7 @@ fn a_cube_needs_six_equal_squares() {
 
 #[test]
 fn mipmaps_are_made_up_to_the_maximum_level() {
-    let mut texture = texture(TextureTarget::Cube, gl::NEAREST_MIPMAP_NEAREST);
+    let mut texture = texture(TexTarget::Cube, gl::NEAREST_MIPMAP_NEAREST);
     for face in 0..6 {
         texture.set_image(face, 0, blank([7, 7, 1]));
     }

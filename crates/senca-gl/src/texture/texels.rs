@@ -3,11 +3,11 @@
 use super::{BaseFormat, InternalFormat, StorageKind};
 
 /// Most bytes of an image. What asks for more is out of memory.
-pub const MAX_IMAGE_BYTES: usize = 1 << 30;
+pub(crate) const MAX_IMAGE_BYTES: usize = 1 << 30;
 
 /// Texels of an image, x fastest, then y from the bottom up, then z.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Texels {
+pub(crate) enum Texels {
     /// Colours of 8 bits.
     Rgba8(Vec<[u8; 4]>),
     /// Colours as floats in [0, 1].
@@ -35,12 +35,11 @@ pub(crate) fn filled<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
 
 impl Texels {
     /// No texels.
-    pub const EMPTY: Self = Self::Rgba8(Vec::new());
+    pub(crate) const EMPTY: Self = Self::Rgba8(Vec::new());
 
     /// `count` texels: black, transparent if the format has an alpha of its own, depth and stencil 0. `None` if
     /// memory does not suffice.
-    #[must_use]
-    pub fn new(format: InternalFormat, count: usize) -> Option<Self> {
+    pub(crate) fn new(format: InternalFormat, count: usize) -> Option<Self> {
         if count.checked_mul(format.storage().texel_bytes())? > MAX_IMAGE_BYTES {
             return None;
         }
@@ -59,8 +58,7 @@ impl Texels {
     }
 
     /// Number of texels.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         match self {
             Self::Rgba8(colors) => colors.len(),
             Self::Rgba32F(colors) => colors.len(),
@@ -70,14 +68,12 @@ impl Texels {
     }
 
     /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Colour of a texel; of depths the depth in red, green and blue.
-    #[must_use]
-    pub fn color(&self, index: usize) -> [f32; 4] {
+    pub(crate) fn color(&self, index: usize) -> [f32; 4] {
         match self {
             Self::Rgba8(colors) => colors[index].map(|c| f32::from(c) / 255.0),
             Self::Rgba32F(colors) => colors[index],
@@ -90,8 +86,7 @@ impl Texels {
     }
 
     /// Depths, if texels have them.
-    #[must_use]
-    pub fn depths(&self) -> Option<&[f32]> {
+    pub(crate) fn depths(&self) -> Option<&[f32]> {
         match self {
             Self::Depth(depth) | Self::DepthStencil { depth, .. } => Some(depth),
             _ => None,
@@ -99,8 +94,7 @@ impl Texels {
     }
 
     /// Depths, if texels have them.
-    #[must_use]
-    pub fn depths_mut(&mut self) -> Option<&mut [f32]> {
+    pub(crate) fn depths_mut(&mut self) -> Option<&mut [f32]> {
         match self {
             Self::Depth(depth) | Self::DepthStencil { depth, .. } => Some(depth),
             _ => None,
@@ -108,8 +102,7 @@ impl Texels {
     }
 
     /// Stencil values, if texels have them.
-    #[must_use]
-    pub fn stencils(&self) -> Option<&[u8]> {
+    pub(crate) fn stencils(&self) -> Option<&[u8]> {
         match self {
             Self::Stencil(stencil) | Self::DepthStencil { stencil, .. } => Some(stencil),
             _ => None,
@@ -117,8 +110,7 @@ impl Texels {
     }
 
     /// Stencil values, if texels have them.
-    #[must_use]
-    pub fn stencils_mut(&mut self) -> Option<&mut [u8]> {
+    pub(crate) fn stencils_mut(&mut self) -> Option<&mut [u8]> {
         match self {
             Self::Stencil(stencil) | Self::DepthStencil { stencil, .. } => Some(stencil),
             _ => None,
@@ -127,7 +119,7 @@ impl Texels {
 
     /// Copies texels from `from` on of another image of the same kind over those from `to` on. Nothing happens
     /// if the kinds differ.
-    pub fn copy_run(&mut self, to: usize, other: &Self, from: usize, count: usize) {
+    pub(crate) fn copy_run(&mut self, to: usize, other: &Self, from: usize, count: usize) {
         match (self, other) {
             (Self::Rgba8(a), Self::Rgba8(b)) => a[to..to + count].copy_from_slice(&b[from..from + count]),
             (Self::Rgba32F(a), Self::Rgba32F(b)) => a[to..to + count].copy_from_slice(&b[from..from + count]),

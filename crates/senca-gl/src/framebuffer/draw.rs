@@ -1,0 +1,335 @@
+//! The planes that are drawn to, in the hands of who draws.
+
+use std::sync::Arc;
+
+use senca_raster::{ColorPlane, Target};
+
+use super::attach::Attachment;
+use super::object::{Framebuffers, window_colors};
+use super::plane::{Area, Plane, side};
+use crate::texture::Texels;
+
+/// Where a plane goes back to.
+#[derive(Clone, Debug)]
+enum Home {
+    WindowColor(usize),
+    WindowDepthStencil,
+    Attachment(Attachment),
+}
+
+/// A plane away from home.
+#[derive(Debug)]
+struct Taken {
+    plane: Plane,
+    home: Home,
+}
+
+/// The planes of the framebuffer that is drawn to. Must go back with [`Framebuffers::put_back`].
+#[derive(Debug)]
+pub(crate) struct DrawPlanes {
+    colors: Vec<Taken>,
+    /// Depths, with the stencil values if both are one image.
+    depth: Option<Taken>,
+    /// Stencil values, if apart.
+    stencil: Option<Taken>,
+    /// Depth values count.
+    uses_depth: bool,
+    /// The stencil values of `depth` count.
+    stencil_with_depth: bool,
+    /// Pixels that all planes have.
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// 0 without multisampling.
+    pub(crate) samples: u32,
+}
+
+impl Framebuffers {
+    /// Takes the planes that are drawn to. The framebuffer should be complete; what is not there is left out.
+    pub(crate) fn take_planes(&mut self) -> DrawPlanes {
+        let (colors, depth, stencil) = match self.draw_object() {
+            Some(object) => {
+                let home = |attachment: &Attachment| {
+                    Some(Home::Attachment(attachment.clone())).filter(|_| !attachment.is_none())
+                };
+                let colors: Vec<Home> =
+                    object.color_of(object.draw_buffer).and_then(home).into_iter().collect();
+                let stencil = home(&object.stencil).filter(|_| !object.stencil.is(&object.depth));
+                (colors, home(&object.depth), stencil)
+            }
+            None => {
+                let colors = window_colors(self.window_draw, self.config.double_buffered).unwrap_or_default();
+                (colors.into_iter().map(Home::WindowColor).collect(), Some(Home::WindowDepthStencil), None)
+            }
+        };
+        let same = self.draw_object().is_none_or(|object| object.stencil.is(&object.depth));
+        let colors: Vec<Taken> = colors.into_iter().filter_map(|home| self.take(home)).collect();
+        let depth = depth.and_then(|home| self.take(home));
+        let stencil = stencil.and_then(|home| self.take(home));
+        DrawPlanes::new(colors, depth, stencil, same)
+    }
+
+    fn take(&mut self, home: Home) -> Option<Taken> {
+        let lend = |plane: &mut Plane| {
+            let empty = Plane { texels: Arc::new(Texels::EMPTY), ..plane.clone() };
+            std::mem::replace(plane, empty)
+        };
+        let plane = match &home {
+            Home::WindowColor(i) => self.window.colors.get_mut(*i).map(lend),
+            Home::WindowDepthStencil => self.window.depth_stencil.as_mut().map(lend),
+            Home::Attachment(attachment) => attachment.take(),
+        };
+        Some(Taken { plane: plane?, home })
+    }
+
+    /// Brings planes home.
+    pub(crate) fn put_back(&mut self, planes: DrawPlanes) {
+        for Taken { plane, home } in planes.colors.into_iter().chain(planes.depth).chain(planes.stencil) {
+            match home {
+                Home::WindowColor(i) => self.window.colors[i] = plane,
+                Home::WindowDepthStencil => self.window.depth_stencil = Some(plane),
+                Home::Attachment(attachment) => attachment.put_back(plane),
+            }
+        }
+    }
+}
+
+impl DrawPlanes {
+    fn new(colors: Vec<Taken>, depth: Option<Taken>, stencil: Option<Taken>, same: bool) -> Self {
+        let has_depth = |taken: &Taken| taken.plane.format.base().has_depth();
+        let uses_depth = depth.as_ref().is_some_and(has_depth);
+        let stencil_with_depth =
+            same && depth.as_ref().is_some_and(|taken| taken.plane.format.base().has_stencil());
+        let mut planes =
+            Self { colors, depth, stencil, uses_depth, stencil_with_depth, width: 0, height: 0, samples: 0 };
+        let area = planes.all().map(|plane| plane.area()).reduce(Area::intersect);
+        planes.samples = planes.all().map(|plane| plane.samples).max().unwrap_or(0);
+        if let Some(area) = area {
+            (planes.width, planes.height) = (area.x1 as u32, area.y1 as u32);
+        }
+        planes
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Plane> {
+        self.colors.iter().chain(&self.depth).chain(&self.stencil).map(|taken| &taken.plane)
+    }
+
+    /// Number of colour planes: 0, 1, or 2 for front and back of the window.
+    pub(crate) fn color_count(&self) -> usize {
+        self.colors.len()
+    }
+
+    /// All pixels.
+    pub(crate) fn area(&self) -> Area {
+        Area::of([0, 0, self.width as i32, self.height as i32])
+    }
+
+    pub(crate) fn color(&mut self, i: usize) -> &mut Plane {
+        &mut self.colors[i].plane
+    }
+
+    /// All colour planes.
+    pub(crate) fn colors_mut(&mut self) -> impl Iterator<Item = &mut Plane> {
+        self.colors.iter_mut().map(|taken| &mut taken.plane)
+    }
+
+    pub(crate) fn depth(&mut self) -> Option<&mut Plane> {
+        self.depth.as_mut().filter(|_| self.uses_depth).map(|taken| &mut taken.plane)
+    }
+
+    pub(crate) fn stencil(&mut self) -> Option<&mut Plane> {
+        let taken = if self.stencil_with_depth { self.depth.as_mut() } else { self.stencil.as_mut() };
+        taken.map(|taken| &mut taken.plane)
+    }
+
+    pub(crate) fn has_depth(&self) -> bool {
+        self.uses_depth
+    }
+
+    pub(crate) fn has_stencil(&self) -> bool {
+        self.stencil_with_depth || self.stencil.is_some()
+    }
+
+    /// Draws: calls `draw` with the planes as a target, once for each colour plane, or once if there is none. If
+    /// there are several, depth and stencil before the first are those before each. A target of several samples
+    /// has twice the width and height; `draw` is told the number of samples along each side of a pixel. Without
+    /// `multisample` it gets pixels in any case, and all samples take what it draws.
+    ///
+    /// Returns what the last call did, the default if there is nothing to draw to.
+    pub(crate) fn draw<R: Default>(
+        &mut self,
+        multisample: bool,
+        mut draw: impl FnMut(Target<'_>, u32) -> R,
+    ) -> R {
+        let count = self.colors.len().max(1);
+        let mut result = R::default();
+        for i in 0..count {
+            let kept = (i + 1 < count).then(|| [&self.depth, &self.stencil].map(texels_of));
+            let drawn = if self.samples > 0 && !multisample {
+                self.draw_single(i, &mut draw)
+            } else {
+                self.draw_one(i, &mut draw)
+            };
+            result = drawn.unwrap_or_default();
+            if let Some([depth, stencil]) = kept {
+                restore(&mut self.depth, depth);
+                restore(&mut self.stencil, stencil);
+            }
+        }
+        result
+    }
+
+    fn draw_one<R>(&mut self, i: usize, draw: &mut impl FnMut(Target<'_>, u32) -> R) -> Option<R> {
+        let side = side(self.samples) as u32;
+        let (width, height) = (self.width * side, self.height * side);
+        if width == 0 || height == 0 {
+            return None;
+        }
+        let fits =
+            |plane: &Plane| plane.is_present() && (plane.width, plane.height) == (self.width, self.height);
+        if !self.all().all(fits) {
+            return self.draw_cut(i, draw);
+        }
+        let Self { colors, depth, stencil, uses_depth, stencil_with_depth, .. } = self;
+        let mut target = Target::new(width, height).ok()?;
+        if let Some(taken) = colors.get_mut(i) {
+            let range = taken.plane.range();
+            target = match taken.plane.texels_mut() {
+                Texels::Rgba8(colors) => target.with_color(ColorPlane::Rgba8(&mut colors[range])).ok()?,
+                Texels::Rgba32F(colors) => target.with_color(ColorPlane::Rgba32F(&mut colors[range])).ok()?,
+                _ => target,
+            };
+        }
+        if let Some(taken) = depth {
+            let range = taken.plane.range();
+            let (depths, stencils) = match taken.plane.texels_mut() {
+                Texels::DepthStencil { depth, stencil } => (Some(depth), Some(stencil)),
+                Texels::Depth(depth) => (Some(depth), None),
+                Texels::Stencil(stencil) => (None, Some(stencil)),
+                _ => (None, None),
+            };
+            if let Some(depths) = depths.filter(|_| *uses_depth) {
+                target = target.with_depth(&mut depths[range.clone()]).ok()?;
+            }
+            if let Some(stencils) = stencils.filter(|_| *stencil_with_depth) {
+                target = target.with_stencil(&mut stencils[range]).ok()?;
+            }
+        }
+        if let Some(taken) = stencil {
+            let range = taken.plane.range();
+            if let Some(stencils) = taken.plane.texels_mut().stencils_mut() {
+                target = target.with_stencil(&mut stencils[range]).ok()?;
+            }
+        }
+        Some(draw(target, side))
+    }
+
+    /// As [`draw_one`](Self::draw_one) for planes of different sizes: draws to copies of what they have in common.
+    fn draw_cut<R>(&mut self, i: usize, draw: &mut impl FnMut(Target<'_>, u32) -> R) -> Option<R> {
+        let mut copies = self.copies(i, self.samples)?;
+        copies.each_pair(self, i, |copy, plane| copy_common(plane, copy));
+        let result = copies.draw_one(0, draw)?;
+        copies.each_pair(self, i, |copy, plane| copy_common(copy, plane));
+        Some(result)
+    }
+
+    /// As [`draw_one`](Self::draw_one) for planes of several samples: draws to one sample of each pixel, and gives
+    /// all samples of the pixels that changed what it has become.
+    fn draw_single<R>(&mut self, i: usize, draw: &mut impl FnMut(Target<'_>, u32) -> R) -> Option<R> {
+        let mut copies = self.copies(i, 0)?;
+        copies.each_pair(self, i, |copy, plane| first_samples(plane, copy));
+        let before = copies.copies(0, 0).map(|mut before| {
+            before.each_pair(&mut copies, 0, |before, copy| copy_common(copy, before));
+            before
+        })?;
+        let result = copies.draw_one(0, draw)?;
+        let changed = before.changes(&copies);
+        copies.each_pair(self, i, |copy, plane| spread(copy, plane, &changed));
+        Some(result)
+    }
+
+    /// Planes of the size that all have in common, with colour plane `i` as the only one.
+    fn copies(&self, i: usize, samples: u32) -> Option<Self> {
+        let (width, height) = (self.width, self.height);
+        let copy = |taken: &Taken| {
+            let plane = Plane::new(taken.plane.format, width, height, samples)?;
+            taken.plane.is_present().then(|| Taken { plane, home: taken.home.clone() })
+        };
+        let one = |taken: &Option<Taken>| taken.as_ref().map(copy).map_or(Some(None), |copy| copy.map(Some));
+        let colors = self.colors.get(i).map(copy).into_iter().collect::<Option<Vec<_>>>()?;
+        let (depth, stencil) = (one(&self.depth)?, one(&self.stencil)?);
+        Some(Self { colors, depth, stencil, samples, ..*self })
+    }
+
+    /// Calls `act` with each plane of copies and the one it is a copy of.
+    fn each_pair(&mut self, others: &mut Self, i: usize, mut act: impl FnMut(&mut Plane, &mut Plane)) {
+        let colors = self.colors.first_mut().zip(others.colors.get_mut(i));
+        let depths = self.depth.as_mut().zip(others.depth.as_mut());
+        let stencils = self.stencil.as_mut().zip(others.stencil.as_mut());
+        for (copy, other) in [colors, depths, stencils].into_iter().flatten() {
+            act(&mut copy.plane, &mut other.plane);
+        }
+    }
+
+    /// Which pixels differ from those of other copies.
+    fn changes(&self, others: &Self) -> Vec<bool> {
+        let mut changed = vec![false; self.width as usize * self.height as usize];
+        for (a, b) in self.all().zip(others.all()) {
+            match (&*a.texels, &*b.texels) {
+                (Texels::Rgba8(a), Texels::Rgba8(b)) => mark(&mut changed, a, b),
+                (Texels::Rgba32F(a), Texels::Rgba32F(b)) => mark(&mut changed, a, b),
+                (a, b) => {
+                    mark(&mut changed, a.depths().unwrap_or_default(), b.depths().unwrap_or_default());
+                    mark(&mut changed, a.stencils().unwrap_or_default(), b.stencils().unwrap_or_default());
+                }
+            }
+        }
+        changed
+    }
+}
+
+/// Marks where values differ.
+fn mark<T: PartialEq>(changed: &mut [bool], a: &[T], b: &[T]) {
+    for (changed, (a, b)) in changed.iter_mut().zip(a.iter().zip(b)) {
+        *changed |= a != b;
+    }
+}
+
+/// Copies the first sample of each pixel.
+fn first_samples(from: &Plane, to: &mut Plane) {
+    for y in 0..to.rows() {
+        for x in 0..to.stride() {
+            let (a, b) = (from.at(2 * x, 2 * y), to.at(x, y));
+            to.texels_mut().copy_run(b, &from.texels, a, 1);
+        }
+    }
+}
+
+/// Copies the pixels that have changed to all their samples.
+fn spread(from: &Plane, to: &mut Plane, changed: &[bool]) {
+    for (i, _) in changed.iter().enumerate().filter(|(_, changed)| **changed) {
+        let (x, y) = (i % from.stride(), i / from.stride());
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let at = to.at(2 * x + dx, 2 * y + dy);
+            to.texels_mut().copy_run(at, &from.texels, i, 1);
+        }
+    }
+}
+
+fn texels_of(taken: &Option<Taken>) -> Option<Texels> {
+    taken.as_ref().map(|taken| (*taken.plane.texels).clone())
+}
+
+fn restore(taken: &mut Option<Taken>, texels: Option<Texels>) {
+    if let (Some(taken), Some(texels)) = (taken, texels) {
+        taken.plane.texels = Arc::new(texels);
+    }
+}
+
+/// Copies what two planes have in common from one to the other.
+fn copy_common(from: &Plane, to: &mut Plane) {
+    let (width, rows) = (from.stride().min(to.stride()), from.rows().min(to.rows()));
+    for y in 0..rows {
+        let (a, b) = (from.at(0, y), to.at(0, y));
+        to.texels_mut().copy_run(b, &from.texels, a, width);
+    }
+}

@@ -1,0 +1,62 @@
+//! The buffers of the window.
+
+use super::accum::Accumulation;
+use super::plane::Plane;
+use crate::texture::{InternalFormat, Texels};
+use crate::{Config, gl};
+use std::sync::Arc;
+
+/// The window's buffers: a front and perhaps a back colour buffer, depth and stencil as configured.
+#[derive(Debug)]
+pub(crate) struct Window {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// Front, then back if there are two.
+    pub(crate) colors: Vec<Plane>,
+    /// Depths, stencil values, or both.
+    pub(crate) depth_stencil: Option<Plane>,
+    pub(crate) accumulation: Option<Accumulation>,
+}
+
+impl Window {
+    pub(crate) const NONE: Self =
+        Self { width: 0, height: 0, colors: Vec::new(), depth_stencil: None, accumulation: None };
+
+    /// Buffers of a size, black, with depth 1; `None` if memory does not suffice.
+    pub(crate) fn new(config: Config, width: u32, height: u32) -> Option<Self> {
+        let color =
+            InternalFormat::for_renderbuffer(if config.float_color { gl::RGBA16 } else { gl::RGBA8 })?;
+        let count = if config.double_buffered { 2 } else { 1 };
+        let colors = (0..count).map(|_| Plane::new(color, width, height, 0)).collect::<Option<_>>()?;
+        let token = match (config.depth_bits > 0, config.stencil_bits > 0) {
+            (true, true) => Some(gl::DEPTH24_STENCIL8),
+            (true, false) => Some(gl::DEPTH_COMPONENT24),
+            (false, true) => Some(gl::STENCIL_INDEX8),
+            (false, false) => None,
+        };
+        let mut depth_stencil = match token.and_then(InternalFormat::for_renderbuffer) {
+            Some(format) => Some(Plane::new(format, width, height, 0)?),
+            None => None,
+        };
+        if let Some(depths) = depth_stencil.as_mut().and_then(|plane| plane.texels_mut().depths_mut()) {
+            depths.fill(1.0);
+        }
+        let accumulation = match config.accum_bits {
+            0 => None,
+            _ => Some(Accumulation::new(width, height)?),
+        };
+        Some(Self { width, height, colors, depth_stencil, accumulation })
+    }
+
+    /// Exchanges front and back buffer, if there are two.
+    pub(crate) fn swap(&mut self) {
+        if let [front, back] = &mut self.colors[..] {
+            std::mem::swap(front, back);
+        }
+    }
+
+    /// The colour buffer that the window shows.
+    pub(crate) fn front(&self) -> Option<&Arc<Texels>> {
+        self.colors.first().map(|plane| &plane.texels)
+    }
+}
