@@ -596,7 +596,7 @@ impl Context {
 
     /// Draws vertices read from arrays, or puts them into the list being made. Attributes that arrays gave are
     /// undefined afterwards; here they stay as they were.
-    fn draw_read(&mut self, mode: Enum, arrays: VertexArrays, elements: Option<Vec<u32>>) {
+    fn draw_read(&mut self, mode: Enum, arrays: VertexArrays, elements: Option<Arc<[u32]>>) {
         let Some(list) = &mut self.compiling else {
             return self.draw_indexed(mode, &arrays, elements);
         };

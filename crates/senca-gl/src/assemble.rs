@@ -170,7 +170,7 @@ impl Context {
         let elements = self.immediate.elements.take();
         let order = Order {
             elements: elements.as_deref(),
-            count: elements.as_ref().map_or(processed.len(), Vec::len),
+            count: elements.as_ref().map_or(processed.len(), |e| e.len()),
         };
         match mode {
             gl::POINTS => self.points(&plan, &processed, order),

@@ -5,9 +5,13 @@ use crate::list::{Attribute, Step};
 use crate::state::TEXTURE_UNITS;
 use crate::vertex::{Attr, Plan, Processed, VertexInput};
 use crate::{Context, Enum, gl};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Vertices after which a run is drawn before it ends. Divides by 2, 3 and 4.
 const RUN: usize = 65_520;
+/// Vertices of a list's block from which on it is looked for some that are the same.
+const WORTH_NUMBERING: usize = 64;
 /// Most vertices of a polygon, which is drawn as a whole.
 const MAX_POLYGON: usize = 1 << 24;
 
@@ -34,6 +38,60 @@ impl VertexArrays {
         self.tex_coords.iter_mut().for_each(Vec::clear);
     }
 
+    /// Keeps one of the vertices that are the same to the last bit, if that is worth while; returns the vertices
+    /// in their order by number.
+    fn share_alike(&mut self) -> Option<Arc<[u32]>> {
+        let count = self.positions.len();
+        if count < WORTH_NUMBERING {
+            return None;
+        }
+        let mut seen: HashMap<Vec<u32>, u32> = HashMap::new();
+        let mut kept = Vec::new();
+        let elements: Vec<u32> = (0..count)
+            .map(|i| {
+                *seen.entry(self.bits(i)).or_insert_with(|| {
+                    kept.push(i);
+                    kept.len() as u32 - 1
+                })
+            })
+            .collect();
+        if kept.len() > count - count / 4 {
+            return None;
+        }
+        self.keep(&kept);
+        Some(elements.into())
+    }
+
+    /// All of a vertex.
+    fn bits(&self, i: usize) -> Vec<u32> {
+        let mut bits = Vec::with_capacity(16);
+        let mut add = |v: Option<&[f32]>| bits.extend(v.unwrap_or_default().iter().map(|f| f.to_bits()));
+        add(self.positions.get(i).map(|v| &v[..]));
+        add(self.normals.get(i).map(|v| &v[..]));
+        add(self.colors.get(i).map(|v| &v[..]));
+        add(self.secondary.get(i).map(|v| &v[..]));
+        self.tex_coords.iter().for_each(|t| add(t.get(i).map(|v| &v[..])));
+        add(self.fog_coords.get(i).map(std::slice::from_ref));
+        bits.extend(self.edge_flags.get(i).map(|e| u32::from(*e)));
+        bits
+    }
+
+    /// Keeps the vertices of some numbers only.
+    fn keep(&mut self, kept: &[usize]) {
+        fn of<T: Copy>(v: &mut Vec<T>, kept: &[usize]) {
+            if !v.is_empty() {
+                *v = kept.iter().map(|i| v[*i]).collect();
+            }
+        }
+        of(&mut self.positions, kept);
+        of(&mut self.normals, kept);
+        of(&mut self.colors, kept);
+        of(&mut self.secondary, kept);
+        of(&mut self.fog_coords, kept);
+        of(&mut self.edge_flags, kept);
+        self.tex_coords.iter_mut().for_each(|t| of(t, kept));
+    }
+
     /// A view, with the current values where an attribute is empty.
     pub(crate) fn input<'a>(&'a self, current: &crate::state::Current) -> VertexInput<'a> {
         fn attr<T: Copy>(each: &[T], same: T) -> Attr<'_, T> {
@@ -57,6 +115,8 @@ impl VertexArrays {
 pub(crate) struct VertexBlock {
     mode: Enum,
     arrays: VertexArrays,
+    /// The vertices in their order, where some are the same.
+    elements: Option<Arc<[u32]>>,
     /// Attributes as they are at the end.
     last: Vec<Attribute>,
 }
@@ -89,11 +149,12 @@ impl VertexBlock {
                 }
             }
         }
-        Some(Self { mode, arrays, last: now })
+        let elements = arrays.share_alike();
+        Some(Self { mode, arrays, elements, last: now })
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.arrays.positions.len()
+        self.elements.as_ref().map_or(self.arrays.positions.len(), |e| e.len())
     }
 }
 
@@ -115,7 +176,7 @@ pub(crate) struct Immediate {
     pub(crate) processed: Processed,
     pub(crate) plan: Plan,
     /// Numbers of the vertices in their order, when it is not that of the arrays.
-    pub(crate) elements: Option<Vec<u32>>,
+    pub(crate) elements: Option<Arc<[u32]>>,
     /// Some of the primitive has been drawn already.
     pub(crate) continued: bool,
 }
@@ -315,12 +376,12 @@ impl Context {
     }
 
     pub(crate) fn do_block(&mut self, block: &VertexBlock) {
-        self.draw_indexed(block.mode, &block.arrays, None);
+        self.draw_indexed(block.mode, &block.arrays, block.elements.clone());
         block.last.iter().for_each(|a| self.do_attribute(*a));
     }
 
     /// Draws primitives from arrays, in the order of `elements` if there are any.
-    pub(crate) fn draw_indexed(&mut self, mode: Enum, arrays: &VertexArrays, elements: Option<Vec<u32>>) {
+    pub(crate) fn draw_indexed(&mut self, mode: Enum, arrays: &VertexArrays, elements: Option<Arc<[u32]>>) {
         self.do_begin(mode);
         if !self.immediate.active() {
             return;

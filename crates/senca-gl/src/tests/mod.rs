@@ -89,6 +89,30 @@ fn lists_arrays_and_single_vertices_draw_alike() {
 }
 
 #[test]
+fn lists_of_many_triangles_share_their_corners_and_draw_alike() {
+    let draw = |c: &mut Context| {
+        c.begin(gl::TRIANGLES);
+        for k in 0..200 {
+            let (x, y) = (f64::from(k % 20) / 10.0 - 1.0, f64::from(k / 20) / 5.0 - 1.0);
+            for (dx, dy) in [(0.0, 0.0), (0.1, 0.0), (0.0, 0.2), (0.1, 0.0), (0.1, 0.2), (0.0, 0.2)] {
+                c.color([(x + dx).abs(), (y + dy).abs(), 0.5]);
+                c.vertex([x + dx, y + dy]);
+            }
+        }
+        c.end();
+    };
+    let (mut one, mut list) = (context(40, 40), context(40, 40));
+    draw(&mut one);
+    one.finish();
+    list.new_list(1, gl::COMPILE);
+    draw(&mut list);
+    list.end_list();
+    list.call_list(1);
+    list.finish();
+    assert!(one.window_pixels() == list.window_pixels());
+}
+
+#[test]
 fn long_strips_and_loops_are_drawn_in_pieces() {
     // More vertices than are drawn at once: a strip of slivers that fills the window.
     let mut c = context(16, 4);
