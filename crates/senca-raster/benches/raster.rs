@@ -178,6 +178,32 @@ fn custom_shader(bencher: Bencher<'_, '_>, cells: u32) {
     Sheet::new(cells).bench(bencher, &mut tiled(1), &Shading::Custom(&Stripes), State::default());
 }
 
+/// A square of 10 x 10 pixels into a target that is kept.
+#[divan::bench]
+fn one_small_square(bencher: Bencher<'_, '_>) {
+    let at = |x: f32, y: f32| Vec4::new(x / 512.0 - 1.0, 1.0 - y / 512.0, 0.5, 1.0);
+    let positions = [at(100.0, 100.0), at(110.0, 100.0), at(110.0, 110.0), at(100.0, 110.0)];
+    let varyings = [0.5; 12];
+    let p = Primitives {
+        positions: &positions,
+        varyings: &varyings,
+        stride: 3,
+        indices: &[0, 1, 2, 0, 2, 3],
+        ids: Ids::Same(0),
+    };
+    let pixels = (SIDE * SIDE) as usize;
+    let (mut color, mut depth) = (vec![[0u8; 4]; pixels], vec![1f32; pixels]);
+    let mut rasterizer = TiledRasterizer::default();
+    let state = State { depth_test: Compare::LessEqual, ..State::default() };
+    bencher.bench_local(|| {
+        let target = Target::new(SIDE, SIDE)
+            .and_then(|t| t.with_color(ColorPlane::Rgba8(&mut color)))
+            .and_then(|t| t.with_depth(&mut depth));
+        let mut target = target.expect("planes are as large as the target");
+        rasterizer.draw(&mut target, &p, &state, &Shading::vertex_rgb())
+    });
+}
+
 #[divan::bench]
 fn clip_one_triangle(bencher: Bencher<'_, '_>) {
     let corners =

@@ -117,6 +117,11 @@ impl Run {
         }
     }
 
+    /// References in all.
+    pub(crate) fn references(&self) -> usize {
+        self.references.len()
+    }
+
     /// Bytes of memory held.
     pub(crate) fn bytes(&self) -> usize {
         self.references.capacity() * size_of::<Reference>()

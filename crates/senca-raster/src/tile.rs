@@ -8,6 +8,9 @@ use crate::api::LANES;
 use crate::bin::TILE;
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
 
+/// Blocks up to which a tile is stored block by block instead of row by row.
+const FEW_BLOCKS: u32 = 8;
+
 /// Blocks along a side of a tile.
 pub(crate) const BLOCKS: usize = TILE / 8;
 
@@ -56,6 +59,25 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
             ids: ids.as_mut().and_then(Iterator::next),
         })
         .collect()
+}
+
+/// One row of tiles of a target.
+pub(crate) fn band<'a>(target: &'a mut Target<'_>, row: usize) -> Band<'a> {
+    let (width, height) = (target.width as usize, target.height as usize);
+    let rows = TILE.min(height - row * TILE);
+    let range = row * TILE * width..(row * TILE + rows) * width;
+    Band {
+        row,
+        width,
+        height: rows,
+        color: target.color.as_mut().map(|plane| match plane {
+            ColorPlane::Rgba32F(p) => ColorPlane::Rgba32F(&mut p[range.clone()]),
+            ColorPlane::Rgba8(p) => ColorPlane::Rgba8(&mut p[range.clone()]),
+        }),
+        depth: target.depth.as_deref_mut().map(|p| &mut p[range.clone()]),
+        stencil: target.stencil.as_deref_mut().map(|p| &mut p[range.clone()]),
+        ids: target.ids.as_deref_mut().map(|p| &mut p[range]),
+    }
 }
 
 /// How a target stores colour.
@@ -267,6 +289,9 @@ impl Rows {
     #[inline(always)]
     fn store<T: Copy>(&self, plane: &mut [T], clear: Option<T>, get: impl Fn(usize, usize) -> [T; 8]) {
         let end = (self.tile_x + TILE).min(self.width);
+        if clear.is_none() && self.present.count_ones() <= FEW_BLOCKS {
+            return self.store_few(plane, get);
+        }
         for y in 0..self.height {
             let row = &mut plane[y * self.width + self.tile_x..y * self.width + end];
             let present = self.present >> (y / 8 * BLOCKS) & 255;
@@ -291,6 +316,23 @@ impl Rows {
                 rest.copy_from_slice(&from[..rest.len()]);
             } else if let Some(v) = clear {
                 rest.fill(v);
+            }
+        }
+    }
+}
+
+impl Rows {
+    /// Writes the blocks that are present, one after another.
+    fn store_few<T: Copy>(&self, plane: &mut [T], get: impl Fn(usize, usize) -> [T; 8]) {
+        let mut left = self.present;
+        while left != 0 {
+            let block = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let first = block / BLOCKS * 8;
+            for y in first..(first + 8).min(self.height) {
+                let to = &mut plane[row_range(self.width, self.tile_x, block, y)];
+                let from = get(block, (y - first) * 8);
+                to.copy_from_slice(&from[..to.len()]);
             }
         }
     }

@@ -11,9 +11,12 @@ use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{StageNeeds, stage_of};
 use crate::target::{Clear, Target};
 use crate::textured::TextureQueue;
-use crate::tile::{Band, ColorFormat, TileBuffer, Touches, bands};
+use crate::tile::{Band, ColorFormat, TileBuffer, Touches, band, bands};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Mutex;
+
+/// Triangles, counted once per tile they meet, up to which a draw is done at once on its thread.
+const SMALL_REFERENCES: usize = 24;
 
 /// How a [`TiledRasterizer`] works. None of it changes a picture.
 #[derive(Clone, Copy, Debug)]
@@ -100,19 +103,30 @@ impl Rasterizer for TiledRasterizer {
         if self.runs.len() < runs {
             self.runs.resize_with(runs, Run::default);
         }
-        let jobs = self.runs[..runs].iter_mut().enumerate();
-        let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
-            run.fill(&input, k * length..((k + 1) * length).min(count));
-            run.counters
-        });
         let mut counters = Counters::default();
-        filled.into_iter().for_each(|c| counters += c);
+        if let [run] = &mut self.runs[..runs] {
+            run.fill(&input, 0..count);
+            counters += run.counters;
+        } else {
+            let jobs = self.runs[..runs].iter_mut().enumerate();
+            let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
+                run.fill(&input, k * length..((k + 1) * length).min(count));
+                run.counters
+            });
+            filled.into_iter().for_each(|c| counters += c);
+        }
         let pass = pass(target, triangles, state, shading, &map, clear);
         let frame = Frame { input: &input, runs: &self.runs[..runs], pass: &pass };
-        for c in frame.draw(target, threads, &mut self.scratch, self.settings.level) {
+        let mut add = |c: FragmentCounts| {
             counters.tested += c.tested;
             counters.passed += c.passed;
             counters.shaded += c.shaded;
+        };
+        if frame.is_small() {
+            add(frame.draw_small(target, &mut self.scratch, self.settings.level));
+        } else {
+            let drawn = frame.draw(target, threads, &mut self.scratch, self.settings.level);
+            drawn.into_iter().for_each(add);
         }
         counters
     }
@@ -189,6 +203,12 @@ impl TiledRasterizer {
         let first = (first as usize).min(end);
         let positions = &p.positions[first..end];
         self.vertices.resize(positions.len(), ScreenVertex::default());
+        if positions.len() <= RUN {
+            for (to, from) in self.vertices.iter_mut().zip(positions) {
+                *to = map.project(*from);
+            }
+            return first;
+        }
         let jobs = positions.chunks(RUN).zip(self.vertices.chunks_mut(RUN)).collect();
         share(threads, jobs, |(from, to): (&[_], &mut [ScreenVertex])| {
             for (to, from) in to.iter_mut().zip(from) {
@@ -225,20 +245,54 @@ impl Frame<'_> {
             .collect();
         work.sort_by_key(|w| std::cmp::Reverse(w.0));
         let spare = Mutex::new(std::mem::take(buffers));
-        let pass = self.pass;
-        let fast = pass.format == ColorFormat::Rgba8 && pass.state.blend.is_none() && !pass.has_ids;
         let counts = share(threads, work, |(_, mut band)| {
             let mut buffer: Scratch = lock(&spare).pop().unwrap_or_default();
-            let counts = if fast {
-                dispatch!(level, simd => self.draw_band::<_, true>(simd, &mut band, &mut buffer))
-            } else {
-                dispatch!(level, simd => self.draw_band::<_, false>(simd, &mut band, &mut buffer))
-            };
+            let counts = self.draw_at(level, &mut band, &mut buffer);
             lock(&spare).push(buffer);
             counts
         });
         *buffers = spare.into_inner().unwrap_or_default();
         counts
+    }
+
+    /// Whether all of it is little work: not worth a second thread, or looking at all tiles.
+    fn is_small(&self) -> bool {
+        self.pass.touches.clear.is_none()
+            && self.runs.iter().map(Run::references).sum::<usize>() <= SMALL_REFERENCES
+    }
+
+    /// Draws on the calling thread, only where there is something to draw.
+    fn draw_small(
+        &self,
+        target: &mut Target<'_>,
+        buffers: &mut Vec<Scratch>,
+        level: Level,
+    ) -> FragmentCounts {
+        let mut counts = FragmentCounts::default();
+        if buffers.is_empty() {
+            buffers.push(Scratch::default());
+        }
+        let [columns, rows] = self.input.tiles;
+        for row in 0..rows {
+            let tiles = row * columns..(row + 1) * columns;
+            if self.runs.iter().map(|r| r.work(tiles.clone())).sum::<u64>() > 0 {
+                let c = self.draw_at(level, &mut band(target, row), &mut buffers[0]);
+                counts.tested += c.tested;
+                counts.passed += c.passed;
+                counts.shaded += c.shaded;
+            }
+        }
+        counts
+    }
+
+    /// Draws a band with the vector instructions of a level.
+    fn draw_at(&self, level: Level, band: &mut Band<'_>, scratch: &mut Scratch) -> FragmentCounts {
+        let pass = self.pass;
+        if pass.format == ColorFormat::Rgba8 && pass.state.blend.is_none() && !pass.has_ids {
+            dispatch!(level, simd => self.draw_band::<_, true>(simd, band, scratch))
+        } else {
+            dispatch!(level, simd => self.draw_band::<_, false>(simd, band, scratch))
+        }
     }
 
     #[inline(always)]
@@ -251,6 +305,9 @@ impl Frame<'_> {
         let mut counts = FragmentCounts::default();
         for column in 0..self.input.tiles[0] {
             let tile = band.row * self.input.tiles[0] + column;
+            if self.pass.touches.clear.is_none() && self.runs.iter().all(|run| run.of_tile(tile).is_empty()) {
+                continue;
+            }
             let (x, y) = ((column * TILE) as i32, (band.row * TILE) as i32);
             let whole = Bounds { x0: x, y0: y, x1: x + TILE as i32, y1: y + TILE as i32 };
             let bounds = whole.intersect(self.pass.map.bounds);
