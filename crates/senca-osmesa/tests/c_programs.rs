@@ -1,0 +1,88 @@
+//! C programs compiled against the system's headers run on the library.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// The folder with the library, which is built now if it is not up to date.
+fn library() -> &'static Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let mut build = Command::new(env!("CARGO"));
+        build.args(["build", "--quiet", "-p", "senca-osmesa"]).current_dir(env!("CARGO_MANIFEST_DIR"));
+        let release = !cfg!(debug_assertions);
+        if release {
+            build.arg("--release");
+        }
+        assert!(build.status().unwrap().success(), "the library builds");
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+        target.join(if release { "release" } else { "debug" })
+    })
+}
+
+/// Whether there is what these tests need; says so if not.
+#[expect(clippy::print_stderr, reason = "a test that is left out is told")]
+fn has_compiler() -> bool {
+    let compiler = Command::new("cc").arg("--version").output().is_ok();
+    let headers = ["gl.h", "glext.h", "osmesa.h"].iter().all(|h| Path::new("/usr/include/GL").join(h).exists());
+    if !(compiler && headers) {
+        eprintln!("left out: there is no C compiler, or no GL/osmesa.h (Debian: libosmesa6-dev)");
+    }
+    compiler && headers
+}
+
+/// Compiles and runs a program of `tests/c`; what it says is wrong fails the test.
+fn runs(name: &str) {
+    if !has_compiler() {
+        return;
+    }
+    let library = library();
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c");
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let compiled = Command::new("cc")
+        .args(["-Wall", "-Wextra", "-O1", "-o"])
+        .arg(&program)
+        .arg(sources.join(format!("{name}.c")))
+        .arg(library.join("libOSMesa.so.8"))
+        .arg("-lpthread")
+        .output()
+        .unwrap();
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let ran = Command::new(&program).env("LD_LIBRARY_PATH", library).output().unwrap();
+    let said = String::from_utf8_lossy(&ran.stdout) + String::from_utf8_lossy(&ran.stderr);
+    assert!(ran.status.success(), "{name}: {}\n{said}", ran.status);
+}
+
+#[test]
+fn drawing() {
+    runs("drawing");
+}
+
+#[test]
+fn contexts() {
+    runs("contexts");
+}
+
+#[test]
+fn nonsense_does_not_crash() {
+    runs("nonsense");
+}
+
+/// No symbol but those of OpenGL and OSMesa is to be seen from outside, and the name is that programs ask for.
+#[test]
+fn only_commands_are_exported() {
+    if !has_compiler() {
+        return;
+    }
+    let file = library().join("libOSMesa.so");
+    let output = |tool: &str, arguments: &[&str]| {
+        let output = Command::new(tool).args(arguments).arg(&file).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let symbols = output("nm", &["-D", "--defined-only"]);
+    let names: Vec<&str> = symbols.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    assert!(names.len() > 600, "{}", names.len());
+    let others: Vec<_> = names.iter().filter(|n| !n.starts_with("gl") && !n.starts_with("OSMesa")).collect();
+    assert!(others.is_empty(), "{others:?}");
+    assert!(output("readelf", &["-d"]).contains("soname: [libOSMesa.so.8]"));
+}
