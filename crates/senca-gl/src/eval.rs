@@ -1,5 +1,6 @@
 //! Evaluators: Bézier curves and surfaces (OpenGL 1.5, section 5.1).
 
+use crate::immediate::VertexArrays;
 use crate::list::Attribute;
 use crate::{Context, Enum, gl};
 use std::sync::Arc;
@@ -8,6 +9,8 @@ use std::sync::Arc;
 pub(crate) const TARGETS: usize = 9;
 /// Greatest order of a map.
 pub const MAX_ORDER: usize = 32;
+/// Most points of a mesh drawn at once.
+const MAX_GRID_POINTS: usize = 1 << 24;
 /// Components of the targets.
 const COMPONENTS: [usize; TARGETS] = [4, 1, 3, 1, 2, 3, 4, 3, 4];
 const COLOR: usize = 0;
@@ -240,13 +243,7 @@ impl Context {
     /// `glEvalMesh2`: the surface between grid points, as `POINT`s, `LINE`s or `FILL`ed quadrilaterals.
     pub fn eval_mesh2(&mut self, mode: Enum, i: [i32; 2], j: [i32; 2]) {
         self.submit(move |c| match mode {
-            gl::POINT => c.keeping_current(|c| {
-                c.do_begin(gl::POINTS);
-                for b in j[0]..=j[1] {
-                    (i[0]..=i[1]).for_each(|a| c.evaluate_grid(a, b));
-                }
-                c.do_end_if_active();
-            }),
+            gl::POINT => c.draw_grid(gl::POINTS, i, j, |_, _| Vec::new()),
             gl::LINE => c.keeping_current(|c| {
                 for b in j[0]..=j[1] {
                     c.do_begin(gl::LINE_STRIP);
@@ -259,18 +256,57 @@ impl Context {
                     c.do_end_if_active();
                 }
             }),
-            gl::FILL => c.keeping_current(|c| {
-                for b in j[0]..j[1] {
-                    c.do_begin(gl::QUAD_STRIP);
-                    for a in i[0]..=i[1] {
-                        c.evaluate_grid(a, b);
-                        c.evaluate_grid(a, b + 1);
-                    }
-                    c.do_end_if_active();
-                }
-            }),
+            gl::FILL => c.draw_grid(gl::QUADS, i, j, grid_quads),
             _ => c.error(gl::INVALID_ENUM),
         });
+    }
+
+    /// Draws all points of a part of the grid, in the order that `elements` gives for so many columns and rows.
+    fn draw_grid(&mut self, mode: Enum, i: [i32; 2], j: [i32; 2], elements: impl Fn(u32, u32) -> Vec<u32>) {
+        let size = |k: [i32; 2]| usize::try_from(i64::from(k[1]) - i64::from(k[0]) + 1).unwrap_or(0);
+        let (columns, rows) = (size(i), size(j));
+        if columns == 0 || rows == 0 {
+            return;
+        }
+        if columns.checked_mul(rows).is_none_or(|n| n > MAX_GRID_POINTS) {
+            return self.error(gl::OUT_OF_MEMORY);
+        }
+        let us: Vec<f32> = (i[0]..=i[1]).map(|a| self.grid2(a, 0)[0]).collect();
+        let vs: Vec<f32> = (j[0]..=j[1]).map(|b| self.grid2(0, b)[1]).collect();
+        let Some(arrays) = self.evaluated(&us, &vs) else { return };
+        let elements = elements(columns as u32, rows as u32);
+        self.draw_indexed(mode, &arrays, (!elements.is_empty()).then(|| elements.into()));
+    }
+
+    /// The attributes that maps give at all pairs of parameters, u fastest; `None` when no map gives vertices.
+    fn evaluated(&self, us: &[f32], vs: &[f32]) -> Option<VertexArrays> {
+        let maps = &self.state.eval.surfaces;
+        let vertex = [VERTEX_4, VERTEX_3].into_iter().find(|k| self.surface_on(*k))?;
+        let grid = |k: usize| Grid::new(&maps[k], COMPONENTS[k], us, vs);
+        let mut out = VertexArrays { edge_flags: vec![true; us.len() * vs.len()], ..VertexArrays::default() };
+        let points = grid(vertex);
+        out.positions = points.each(|g, i, j| {
+            let [x, y, z, w] = g.at(i, j);
+            if vertex == VERTEX_4 { [x, y, z, w] } else { [x, y, z, 1.0] }
+        });
+        if self.state.enabled.has(crate::state::Cap::AutoNormal) {
+            out.normals = points.each(|g, i, j| {
+                let [p, du, dv] = g.with_slopes(i, j);
+                normal_of(p, du, dv, vertex == VERTEX_4)
+            });
+        } else if self.surface_on(NORMAL) {
+            out.normals = grid(NORMAL).each(|g, i, j| {
+                let [x, y, z, _] = g.at(i, j);
+                [x, y, z]
+            });
+        }
+        if self.surface_on(COLOR) {
+            out.colors = grid(COLOR).each(Grid::at);
+        }
+        if let Some(n) = (1..=4).rev().find(|n| self.surface_on(TEXTURE + n - 1)) {
+            out.tex_coords[0] = grid(TEXTURE + n - 1).each(|g, i, j| tex_coords(g.at(i, j), n));
+        }
+        Some(out)
     }
 
     fn evaluate_grid(&mut self, i: i32, j: i32) {
@@ -351,8 +387,7 @@ impl Context {
         // The target of most coordinates counts.
         if let Some(n) = (1..=4).rev().find(|n| on[TEXTURE + n - 1]) {
             let v = value(TEXTURE + n - 1);
-            let coords = std::array::from_fn(|k| if k < n { v[k] } else { [0.0, 0.0, 0.0, 1.0][k] });
-            self.do_attribute(Attribute::TexCoord(0, coords));
+            self.do_attribute(Attribute::TexCoord(0, tex_coords(v, n)));
         }
         if on[VERTEX_4] {
             self.do_attribute(Attribute::Vertex(value(VERTEX_4)));
@@ -361,6 +396,48 @@ impl Context {
             self.do_attribute(Attribute::Vertex([x, y, z, 1.0]));
         }
         self.state.current = kept;
+    }
+}
+
+/// Quadrilaterals between the points of a grid, cut and coloured as the strips that the specification says.
+fn grid_quads(columns: u32, rows: u32) -> Vec<u32> {
+    let quad = |k: u32| [k + 1, k, k + columns, k + columns + 1];
+    (0..rows - 1).flat_map(|b| (0..columns - 1).flat_map(move |a| quad(b * columns + a))).collect()
+}
+
+/// The first `n` texture coordinates of a map.
+fn tex_coords(v: [f32; 4], n: usize) -> [f32; 4] {
+    std::array::from_fn(|k| if k < n { v[k] } else { [0.0, 0.0, 0.0, 1.0][k] })
+}
+
+/// A map with its weights at the parameters of a grid.
+struct Grid<'a> {
+    map: &'a Map,
+    components: usize,
+    u: Vec<([f32; MAX_ORDER], [f32; MAX_ORDER])>,
+    v: Vec<([f32; MAX_ORDER], [f32; MAX_ORDER])>,
+}
+
+impl<'a> Grid<'a> {
+    fn new(map: &'a Map, components: usize, us: &[f32], vs: &[f32]) -> Self {
+        let weights = |axis: usize, at: &[f32]| at.iter().map(|t| map.weights(axis, *t)).collect();
+        Self { map, components, u: weights(0, us), v: weights(1, vs) }
+    }
+
+    fn at(&self, i: usize, j: usize) -> [f32; 4] {
+        self.map.sum(self.components, &self.u[i].0, &self.v[j].0)
+    }
+
+    fn with_slopes(&self, i: usize, j: usize) -> [[f32; 4]; 3] {
+        let (u, v) = (&self.u[i], &self.v[j]);
+        [(&u.0, &v.0), (&u.1, &v.0), (&u.0, &v.1)].map(|(u, v)| self.map.sum(self.components, u, v))
+    }
+
+    fn each<T>(&self, f: impl Fn(&Self, usize, usize) -> T) -> Vec<T> {
+        (0..self.v.len())
+            .flat_map(|j| (0..self.u.len()).map(move |i| (i, j)))
+            .map(|(i, j)| f(self, i, j))
+            .collect()
     }
 }
 

@@ -24,7 +24,8 @@ fn library() -> &'static Path {
 #[expect(clippy::print_stderr, reason = "a test that is left out is told")]
 fn has_compiler() -> bool {
     let compiler = Command::new("cc").arg("--version").output().is_ok();
-    let headers = ["gl.h", "glext.h", "osmesa.h"].iter().all(|h| Path::new("/usr/include/GL").join(h).exists());
+    let headers =
+        ["gl.h", "glext.h", "osmesa.h"].iter().all(|h| Path::new("/usr/include/GL").join(h).exists());
     if !(compiler && headers) {
         eprintln!("left out: there is no C compiler, or no GL/osmesa.h (Debian: libosmesa6-dev)");
     }

@@ -176,3 +176,21 @@ fn the_surface_is_grey_lit_and_where_it_should_be() {
     let centre = pixels[183 * 400 + 253][0];
     assert!((i32::from(centre) - 20).abs() <= 3, "{centre}");
 }
+
+#[test]
+fn a_mesh_is_the_strips_it_stands_for() {
+    let mesh = surface();
+    let mut strips = surface();
+    strips.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    strips.rotate(85.0, [1.0, 1.0, 1.0]);
+    for j in 0..20 {
+        strips.begin(gl::QUAD_STRIP);
+        for i in 0..=20 {
+            strips.eval_point2([i, j]);
+            strips.eval_point2([i, j + 1]);
+        }
+        strips.end();
+    }
+    strips.finish();
+    assert!(mesh.window_pixels() == strips.window_pixels());
+}
