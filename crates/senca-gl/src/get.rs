@@ -78,16 +78,29 @@ impl Answer {
 /// Extensions that are there, as `glGetString(GL_EXTENSIONS)` tells.
 pub const EXTENSIONS: &[&str] = &[
     "GL_ARB_clip_control",
+    "GL_ARB_depth_buffer_float",
+    "GL_ARB_depth_texture",
+    "GL_ARB_framebuffer_object",
+    "GL_ARB_half_float_pixel",
     "GL_ARB_multitexture",
     "GL_ARB_occlusion_query",
     "GL_ARB_point_parameters",
+    "GL_ARB_seamless_cube_map",
+    "GL_ARB_shadow",
+    "GL_ARB_texture_border_clamp",
+    "GL_ARB_texture_compression",
+    "GL_ARB_texture_cube_map",
     "GL_ARB_texture_env_add",
     "GL_ARB_texture_env_combine",
     "GL_ARB_texture_env_crossbar",
     "GL_ARB_texture_env_dot3",
+    "GL_ARB_texture_mirrored_repeat",
+    "GL_ARB_texture_non_power_of_two",
     "GL_ARB_transpose_matrix",
     "GL_ARB_vertex_buffer_object",
     "GL_ARB_window_pos",
+    "GL_EXT_abgr",
+    "GL_EXT_bgra",
     "GL_EXT_blend_color",
     "GL_EXT_blend_equation_separate",
     "GL_EXT_blend_func_separate",
@@ -96,19 +109,29 @@ pub const EXTENSIONS: &[&str] = &[
     "GL_EXT_draw_range_elements",
     "GL_EXT_fog_coord",
     "GL_EXT_multi_draw_arrays",
+    "GL_EXT_packed_depth_stencil",
+    "GL_EXT_packed_pixels",
     "GL_EXT_point_parameters",
     "GL_EXT_polygon_offset",
     "GL_EXT_rescale_normal",
     "GL_EXT_secondary_color",
     "GL_EXT_separate_specular_color",
+    "GL_EXT_shadow_funcs",
     "GL_EXT_stencil_wrap",
     "GL_EXT_texgen_reflection",
+    "GL_EXT_texture3D",
     "GL_EXT_texture_env_add",
     "GL_EXT_texture_env_combine",
     "GL_EXT_texture_env_dot3",
     "GL_EXT_texture_lod_bias",
+    "GL_EXT_texture_object",
+    "GL_EXT_texture_sRGB",
     "GL_EXT_vertex_array",
     "GL_KHR_debug",
+    "GL_SGIS_generate_mipmap",
+    "GL_SGIS_texture_border_clamp",
+    "GL_SGIS_texture_edge_clamp",
+    "GL_SGIS_texture_lod",
 ];
 
 impl Context {
@@ -150,6 +173,7 @@ impl Context {
             .or_else(|| self.list_answer(name))
             .or_else(|| self.array_answer(name))
             .or_else(|| self.limit_answer(name))
+            .or_else(|| self.image_answer(name))
             .or_else(|| self.enabled(name).map(|on| Answer::bools([on])))
     }
 

@@ -39,6 +39,7 @@ mod framebuffer;
 mod get;
 #[path = "tokens.rs"]
 pub mod gl;
+mod image_state;
 mod immediate;
 mod lighting;
 mod list;

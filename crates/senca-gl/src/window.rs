@@ -43,6 +43,7 @@ impl Context {
     /// Keeps colours of the window as floating point or in 8 bits from the next [`Context::resize`] on.
     pub fn set_float_color(&mut self, float: bool) {
         self.config.float_color = float;
+        self.framebuffers.config.float_color = float;
     }
 
     /// Notes an error found by whoever hands commands over, unless one is waiting to be asked for.

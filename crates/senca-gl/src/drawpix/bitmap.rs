@@ -77,7 +77,7 @@ impl Context {
         skipped: usize,
         rows: impl Iterator<Item = (i32, usize)> + Clone,
     ) {
-        self.flush_batch();
+        self.settle_planes();
         let color = self.state.current.raster.color;
         let mut bits = vec![0; (area.x1 - area.x0) as usize];
         let mut planes = self.framebuffers.take_planes();

@@ -212,7 +212,7 @@ impl Context {
 
     /// Writes colours where nothing can happen to them.
     fn write_colors(&mut self, image: &Image<'_>, place: &Placement) {
-        self.flush_batch();
+        self.settle_planes();
         let mut planes = self.framebuffers.take_planes();
         planes.colors_mut().for_each(|plane| write_plane(image, place, plane));
         self.framebuffers.put_back(planes);
@@ -293,7 +293,7 @@ impl Context {
 
     /// Writes stencil values through the mask.
     fn write_stencils(&mut self, image: &Image<'_>, place: &Placement) {
-        self.flush_batch();
+        self.settle_planes();
         let mask = self.state.stencil.write_mask as u8;
         let mut planes = self.framebuffers.take_planes();
         if let Some(plane) = planes.stencil().filter(|plane| plane.is_present()) {
@@ -312,7 +312,7 @@ impl Context {
 
     /// Writes depths as they are, if depths may be written.
     fn write_depths(&mut self, image: &Image<'_>, place: &Placement) {
-        self.flush_batch();
+        self.settle_planes();
         let mut planes = self.framebuffers.take_planes();
         if let Some(plane) = planes.depth().filter(|plane| self.state.depth.mask && plane.is_present()) {
             let mut values = vec![0.0; image.size()[0] as usize];

@@ -108,7 +108,7 @@ impl Context {
         }
         self.check_samples(&rects)?;
         self.check_formats(mask)?;
-        self.flush_batch();
+        self.settle_planes();
         self.blit_planes(&rects, mask, filter == gl::LINEAR);
         Ok(())
     }

@@ -42,8 +42,17 @@ impl Context {
         });
     }
 
+    /// Draws what waits, and lets go of textures that may be written to because they are drawn to.
+    pub(crate) fn settle_planes(&mut self) {
+        if self.framebuffers.draw == 0 {
+            self.flush_batch();
+        } else {
+            self.release_textures();
+        }
+    }
+
     fn clear_buffers(&mut self, mask: Enum) {
-        self.flush_batch();
+        self.settle_planes();
         let mut planes = self.framebuffers.take_planes();
         let area = self.scissored(planes.area());
         let state = &self.state;

@@ -123,6 +123,7 @@ impl DrawPlanes {
         Area::of([0, 0, self.width as i32, self.height as i32])
     }
 
+    #[cfg(test)]
     pub(crate) fn color(&mut self, i: usize) -> &mut Plane {
         &mut self.colors[i].plane
     }
@@ -139,14 +140,6 @@ impl DrawPlanes {
     pub(crate) fn stencil(&mut self) -> Option<&mut Plane> {
         let taken = if self.stencil_with_depth { self.depth.as_mut() } else { self.stencil.as_mut() };
         taken.map(|taken| &mut taken.plane)
-    }
-
-    pub(crate) fn has_depth(&self) -> bool {
-        self.uses_depth
-    }
-
-    pub(crate) fn has_stencil(&self) -> bool {
-        self.stencil_with_depth || self.stencil.is_some()
     }
 
     /// Draws: calls `draw` with the planes as a target, once for each colour plane, or once if there is none. If

@@ -26,8 +26,8 @@ mod window;
 mod tests;
 
 pub(crate) use blit::Aspect;
-pub(crate) use object::{Framebuffers, Renderbuffers, SavedBuffers};
-pub(crate) use plane::{Area, Plane};
+pub(crate) use object::{Framebuffers, MAX_COLOR_ATTACHMENTS, Renderbuffers, SavedBuffers};
+pub(crate) use plane::{Area, Plane, SAMPLES};
 
 /// Largest side of a renderbuffer.
 pub(crate) const MAX_RENDERBUFFER_SIZE: u32 = 8192;

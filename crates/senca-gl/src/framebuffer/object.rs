@@ -3,7 +3,7 @@
 use super::attach::{Attachment, Point, RenderbufferRef};
 use super::plane::Plane;
 use super::window::Window;
-use crate::texture::{Names, TextureRef};
+use crate::texture::{InternalFormat, Names, TextureRef};
 use crate::{Config, Enum, Error, gl};
 
 /// Points where colours can be attached.
@@ -227,6 +227,21 @@ impl Framebuffers {
     pub(crate) fn draws_alpha(&self) -> bool {
         let color = self.draw_object().and_then(|object| object.color_of(object.draw_buffer));
         color.and_then(Attachment::plane).is_none_or(|plane| plane.format.base().has_alpha())
+    }
+
+    /// Formats of colour, depth and stencil of the framebuffer that is drawn to.
+    pub(crate) fn draw_formats(&self) -> [Option<InternalFormat>; 3] {
+        let format = |plane: Option<Plane>| plane.map(|plane| plane.format);
+        match self.draw_object() {
+            Some(object) => {
+                let color = object.color_of(object.draw_buffer).and_then(Attachment::plane);
+                [format(color), format(object.depth.plane()), format(object.stencil.plane())]
+            }
+            None => {
+                let depth_stencil = format(self.window.depth_stencil.clone());
+                [format(self.window.colors.first().cloned()), depth_stencil, depth_stencil]
+            }
+        }
     }
 
     /// Samples of the framebuffer that is drawn to.

@@ -459,3 +459,43 @@ fn deleting_what_is_bound_goes_back_to_the_window() {
     assert!(!c.is_renderbuffer(1));
     assert_eq!(c.get_error(), gl::NO_ERROR);
 }
+
+/// A red triangle over the lower left half of 8 x 8 pixels of four samples, resolved.
+fn resolved_triangle(multisample: bool) -> Vec<u8> {
+    let mut c = context(8, 8);
+    object(&mut c, [8, 8], 4);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    if !multisample {
+        c.disable(gl::MULTISAMPLE);
+    }
+    c.enable(gl::DEPTH_TEST);
+    c.begin(gl::TRIANGLES);
+    c.vertex([-1.0, -1.0]);
+    c.vertex([1.0, -1.0]);
+    c.vertex([-1.0, 1.0]);
+    c.end();
+    c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, 0);
+    c.blit_framebuffer([0, 0, 8, 8], [0, 0, 8, 8], gl::COLOR_BUFFER_BIT, gl::NEAREST);
+    c.bind_framebuffer(gl::READ_FRAMEBUFFER, 0);
+    reds(&mut c, [8, 8])
+}
+
+#[test]
+fn samples_are_covered_each_for_itself() {
+    let found = resolved_triangle(true);
+    for (i, red) in found.iter().enumerate() {
+        let (x, y) = (i % 8, i / 8);
+        match (x + y).cmp(&7) {
+            std::cmp::Ordering::Less => assert_eq!(*red, 255),
+            std::cmp::Ordering::Greater => assert_eq!(*red, 0),
+            std::cmp::Ordering::Equal => assert!((1..255).contains(red), "{x} {y} {red}"),
+        }
+    }
+}
+
+#[test]
+fn without_multisampling_pixels_are_whole() {
+    let found = resolved_triangle(false);
+    assert!(found.iter().all(|red| matches!(red, 0 | 255)));
+    assert!(found.iter().filter(|red| **red == 255).count() >= 28);
+}

@@ -26,21 +26,6 @@ pub(crate) enum BaseFormat {
 }
 
 impl BaseFormat {
-    /// Token of the format.
-    pub(crate) fn token(self) -> u32 {
-        match self {
-            Self::Alpha => gl::ALPHA,
-            Self::Luminance => gl::LUMINANCE,
-            Self::LuminanceAlpha => gl::LUMINANCE_ALPHA,
-            Self::Intensity => gl::INTENSITY,
-            Self::Rgb => gl::RGB,
-            Self::Rgba => gl::RGBA,
-            Self::Depth => gl::DEPTH_COMPONENT,
-            Self::DepthStencil => gl::DEPTH_STENCIL,
-            Self::Stencil => gl::STENCIL_INDEX,
-        }
-    }
-
     /// Whether texels are colours.
     pub(crate) fn is_color(self) -> bool {
         !self.has_depth() && self != Self::Stencil

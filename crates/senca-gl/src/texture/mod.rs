@@ -23,6 +23,8 @@ mod texels;
 mod upload;
 
 #[cfg(test)]
+mod command_tests;
+#[cfg(test)]
 mod tests;
 
 pub(crate) use crate::fragment::View;
@@ -32,5 +34,5 @@ pub(crate) use format::{BaseFormat, InternalFormat, StorageKind};
 pub(crate) use image::{TexImage, Upload, each_row};
 pub(crate) use mipmap::next_level;
 pub(crate) use names::Names;
-pub(crate) use object::{TexParams, Texture, levels_of};
+pub(crate) use object::{MAX_3D_TEXTURE_SIZE, MAX_TEXTURE_SIZE, TexParams, Texture, levels_of};
 pub(crate) use texels::{MAX_IMAGE_BYTES, Texels, filled};

@@ -69,9 +69,4 @@ impl<T: Clone> Names<T> {
     pub(crate) fn remove(&mut self, name: u32) -> Option<T> {
         self.objects.remove(&name).flatten()
     }
-
-    /// All objects with their names, in order of names.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, &T)> {
-        self.objects.iter().filter_map(|(&name, object)| Some((name, object.as_ref()?)))
-    }
 }

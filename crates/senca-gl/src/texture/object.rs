@@ -371,13 +371,6 @@ impl Texture {
         }
         Ok(())
     }
-
-    /// Images of all levels and faces: face, level, image.
-    pub(crate) fn images(&self) -> impl Iterator<Item = (usize, u32, &TexImage)> {
-        self.faces.iter().enumerate().flat_map(|(face, levels)| {
-            (0..).zip(levels).filter_map(move |(level, image)| Some((face, level, image.as_ref()?)))
-        })
-    }
 }
 
 /// Size with border that an image `steps` levels behind `fine` must have.

@@ -67,11 +67,6 @@ impl Texels {
         }
     }
 
-    /// Whether there are none.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Colour of a texel; of depths the depth in red, green and blue.
     pub(crate) fn color(&self, index: usize) -> [f32; 4] {
         match self {
