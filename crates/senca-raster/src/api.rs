@@ -90,6 +90,11 @@ pub struct State {
     pub strokes: StrokeRule,
     /// Pattern lines are broken up by. Default: none.
     pub stipple: Option<LineStipple>,
+    /// Whether squares of 2 x 2 pixels of the target are the samples of one pixel: a [`Shading::Stage`]
+    /// then colours once per such pixel and merges sample by sample. Viewport, scissor and sizes are
+    /// those of the target all the same. The target's sides must be even. Other shadings colour
+    /// every sample. Default: no.
+    pub multisample: bool,
     /// Whether alpha is multiplied by the share of the pixel that a primitive covers, and all pixels it
     /// touches are drawn: lines as rectangles, points as discs, of any size. Stages find the share in
     /// [`Fragments::coverage`] and multiply by it themselves. Default: no.
@@ -147,6 +152,7 @@ impl Default for State {
             point_sizes: None,
             strokes: StrokeRule::Centres,
             stipple: None,
+            multisample: false,
             antialias: false,
         }
     }

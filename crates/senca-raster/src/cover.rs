@@ -193,8 +193,8 @@ fn along<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, row: f32x16<S>, fx: f32x
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Place {
     pub(crate) lane: usize,
-    block: usize,
-    pair: usize,
+    pub(crate) block: usize,
+    pub(crate) pair: usize,
 }
 
 /// Where fragments are, as interpolation wants it: pixels from the reference, and weights of corners 1
@@ -236,6 +236,15 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 full |= u32::from(whole) << bx;
             }
             if active == 0 {
+                continue;
+            }
+            if self.pass.touches.samples {
+                for bx in (first..=last).filter(|bx| active >> bx & 1 == 1) {
+                    self.block_of_samples(simd, lane, [bx, by], full >> bx & 1 == 1);
+                }
+                if full != 0 && self.pass.lowers_farthest {
+                    self.lower_farthest(lane, by, full);
+                }
                 continue;
             }
             let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
@@ -505,7 +514,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// The pixels of a vector, for the stage.
     #[inline(always)]
-    fn pixels(&mut self, Place { block, pair, .. }: Place) -> Pixels<'_> {
+    pub(crate) fn pixels(&mut self, Place { block, pair, .. }: Place) -> Pixels<'_> {
         let (pass, buffer) = (self.pass, &mut *self.buffer);
         let [r, g, b, a] = &mut buffer.rgba;
         Pixels {
@@ -664,7 +673,7 @@ pub(crate) fn colors<S: Simd>(
 
 /// Which lanes of `new` pass against `stored`.
 #[inline(always)]
-fn compare<S: Simd>(simd: S, test: Compare, new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+pub(crate) fn compare<S: Simd>(simd: S, test: Compare, new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
     // The usual ones first: a predicted branch instead of a jump through a table.
     if test == Compare::Less {
         return new.simd_lt(stored);

@@ -50,6 +50,7 @@ mod blend;
 pub mod clip;
 mod cover;
 mod lines;
+mod multisample;
 mod pixel;
 mod sample;
 pub mod scanline;

@@ -216,7 +216,8 @@ fn in_strips(
     if threads <= 1 {
         return draw(target, 0);
     }
-    let rows = (target.height as usize).div_ceil(threads * STRIPS_PER_THREAD).max(1);
+    // Whole blocks, whose fragments go to stages together.
+    let rows = (target.height as usize).div_ceil(threads * STRIPS_PER_THREAD).next_multiple_of(8).max(8);
     let strips = target.strips(rows).into_par_iter().enumerate();
     let counters: Vec<Counters> = strips.map(|(i, mut strip)| draw(&mut strip, (i * rows) as i32)).collect();
     let mut sum = Counters::default();

@@ -15,9 +15,10 @@
 
 use crate::api::{Counters, Fragments, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shaded, Shading, State};
 use crate::assemble::{TriangleVaryings, for_each_triangle};
+use crate::multisample::{SAMPLES, sample_of};
 use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, Setup, ceil_div};
 use crate::shade::{interpolate, shade_plain};
-use crate::stage::{run_stage, stage_of};
+use crate::stage::{FragmentStage, run_stage, run_stage_on_samples, stage_of};
 use crate::target::Target;
 
 /// Draws triangle after triangle, row after row, on one thread. The oracle of
@@ -153,6 +154,11 @@ impl RowFiller<'_, '_> {
     }
 
     fn fill_group(&mut self, y: i32, columns: std::ops::Range<i32>) {
+        if self.state.multisample
+            && let Some(stage) = stage_of(self.shading)
+        {
+            return self.fill_samples(stage, y, columns);
+        }
         let first_lane = 8 * (y & 1) as usize;
         let mut batch = Batch { x: columns.start & !7, y: y & !1, mask: 0, depth: [0.0; LANES] };
         for x in columns {
@@ -181,6 +187,52 @@ impl RowFiller<'_, '_> {
                 self.write(&batch);
             }
         }
+    }
+
+    /// One row of samples of four pixels.
+    fn fill_samples(&mut self, stage: &dyn FragmentStage, y: i32, columns: std::ops::Range<i32>) {
+        let (mut masks, mut depths) = ([0u16; SAMPLES], [[0.0; LANES]; SAMPLES]);
+        let corner = [columns.start & !7, y & !7];
+        for x in columns {
+            let [fx, fy] = self.offset(x, y);
+            let depth = self.setup.depth(fx, fy);
+            self.counters.tested += 1;
+            if self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth) {
+                let (sample, lane) = sample_of((x & 7) as usize, (y & 7) as usize);
+                masks[sample] |= 1 << lane;
+                depths[sample][lane] = depth;
+            }
+        }
+        let mask = masks.iter().fold(0, |any, mask| any | mask);
+        if mask == 0 {
+            return;
+        }
+        let mut values = [[0.0; LANES]; MAX_VARYINGS];
+        let values = &mut values[..self.varyings.count];
+        let [fx, fy] = self.offset(corner[0], corner[1]);
+        let mut depth = [0.0; LANES];
+        for lane in 0..LANES {
+            let at = [fx + 0.5 + (lane % 4 * 2) as f32, fy + 0.5 + (lane / 4 * 2) as f32];
+            let weights = self.setup.weights(at[0], at[1]);
+            depth[lane] = self.setup.depth(at[0], at[1]);
+            for (k, plane) in values.iter_mut().enumerate() {
+                plane[lane] = self.varyings.at(k, self.setup.affine, at, weights);
+            }
+        }
+        let fragments = Fragments {
+            x: corner[0] as u32 / 2,
+            y: corner[1] as u32 / 2,
+            columns: 4,
+            mask,
+            depth,
+            varyings: values,
+            id: self.id,
+            front: self.setup.swapped,
+            coverage: None,
+        };
+        self.counters.shaded += u64::from(mask.count_ones());
+        self.counters.passed +=
+            run_stage_on_samples(stage, self.target, 0, self.state, &fragments, &masks, &depths);
     }
 
     /// Calls `with` with the fragments of a batch, and where its lane 0 is.

@@ -3,9 +3,10 @@
 
 use crate::api::Counters;
 use crate::api::{Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
+use crate::multisample::{SAMPLES, place_of, sample_of};
 use crate::setup::{Bounds, ScreenMap};
 use crate::shade::color_of_values;
-use crate::stage::{run_stage, stage_of};
+use crate::stage::{run_stage, run_stage_on_samples, stage_of};
 use crate::target::Target;
 
 /// A strip of the target, and what is drawn into it.
@@ -20,6 +21,8 @@ pub(crate) struct Sink<'a, 't> {
     /// Fragments go together to the caller's code.
     batched: bool,
     tests_depth: bool,
+    /// Pixels have several samples.
+    samples: bool,
     id: u32,
     front: bool,
     stride: usize,
@@ -32,7 +35,12 @@ pub(crate) struct Sink<'a, 't> {
 struct Batch {
     x: i32,
     y: i32,
+    /// Pixels with a fragment.
     mask: u16,
+    /// Of each sample, where there are several; else the first is that of the pixel.
+    masks: [u16; SAMPLES],
+    depths: [[f32; LANES]; SAMPLES],
+    /// Of each pixel with several samples: that of its last one.
     depth: [f32; LANES],
     coverage: [f32; LANES],
 }
@@ -55,10 +63,19 @@ impl<'a, 't> Sink<'a, 't> {
             shading,
             batched: matches!(shading, Shading::Custom(_) | Shading::Stage(_)),
             tests_depth: stage_of(shading).is_none_or(|stage| !stage.tests_depth()),
+            samples: state.multisample && stage_of(shading).is_some(),
             id: 0,
             front: true,
             stride: 0,
-            batch: Batch { x: 0, y: 0, mask: 0, depth: [0.0; LANES], coverage: [1.0; LANES] },
+            batch: Batch {
+                x: 0,
+                y: 0,
+                mask: 0,
+                masks: [0; SAMPLES],
+                depths: [[0.0; LANES]; SAMPLES],
+                depth: [0.0; LANES],
+                coverage: [1.0; LANES],
+            },
             values: [0.0; MAX_VARYINGS],
             counters: Counters::default(),
         }
@@ -108,14 +125,23 @@ impl<'a, 't> Sink<'a, 't> {
     }
 
     fn gather(&mut self, x: i32, y: i32, depth: f32, coverage: f32, values: &impl Fn(i32, i32, &mut [f32])) {
-        let (block_x, block_y) = (x & !7, y & !1);
+        let (block_x, block_y) = (x & !7, if self.samples { y & !7 } else { y & !1 });
         if self.batch.mask != 0 && (block_x, block_y) != (self.batch.x, self.batch.y) {
             self.end(values);
         }
-        let lane = ((y & 1) * 8 + (x & 7)) as usize;
         (self.batch.x, self.batch.y) = (block_x, block_y);
+        if self.samples {
+            let (sample, lane) = sample_of((x & 7) as usize, (y & 7) as usize);
+            self.batch.mask |= 1 << lane;
+            self.batch.masks[sample] |= 1 << lane;
+            self.batch.depths[sample][lane] = depth;
+            self.batch.depth[lane] = depth;
+            self.batch.coverage[lane] = coverage;
+            return;
+        }
+        let lane = ((y & 1) * 8 + (x & 7)) as usize;
         self.batch.mask |= 1 << lane;
-        self.batch.depth[lane] = depth;
+        self.batch.depths[0][lane] = depth;
         self.batch.coverage[lane] = coverage;
     }
 
@@ -131,19 +157,21 @@ impl<'a, 't> Sink<'a, 't> {
         let mut planes = [[0.0; LANES]; MAX_VARYINGS];
         let mut at_lane = [0.0; MAX_VARYINGS];
         for lane in 0..LANES {
-            let (x, y) = (self.batch.x + (lane % 8) as i32, self.batch.y + (lane / 8) as i32);
+            let (x, y) = if self.samples { place_of(0, lane) } else { (lane % 8, lane / 8) };
+            let (x, y) = (self.batch.x + x as i32, self.batch.y + y as i32);
             values(x, y, &mut at_lane[..self.stride]);
             for (plane, value) in planes.iter_mut().zip(&at_lane[..self.stride]) {
                 plane[lane] = *value;
             }
         }
         let (coverage, smooth) = (self.batch.coverage, self.state.antialias);
+        let side = if self.samples { 2 } else { 1 };
         let fragments = Fragments {
-            x: self.batch.x as u32,
-            y: self.batch.y as u32,
-            columns: 8,
+            x: self.batch.x as u32 / side,
+            y: self.batch.y as u32 / side,
+            columns: 8 / side,
             mask: std::mem::take(&mut self.batch.mask),
-            depth: self.batch.depth,
+            depth: if self.samples { self.batch.depth } else { self.batch.depths[0] },
             varyings: &planes[..self.stride],
             id: self.id,
             front: self.front,
@@ -151,6 +179,13 @@ impl<'a, 't> Sink<'a, 't> {
         };
         self.counters.shaded += u64::from(fragments.mask.count_ones());
         match self.shading {
+            Shading::Stage(stage) if self.samples => {
+                let masks = std::mem::take(&mut self.batch.masks);
+                let depths = &self.batch.depths;
+                let (target, row) = (&mut *self.target, self.first_row);
+                self.counters.passed +=
+                    run_stage_on_samples(*stage, target, row, self.state, &fragments, &masks, depths);
+            }
             Shading::Stage(stage) => {
                 let passed = run_stage(*stage, self.target, self.first_row, self.state, &fragments);
                 self.counters.passed += u64::from(passed.count_ones());

@@ -6,6 +6,7 @@
 //! framebuffer goes here.
 
 use crate::api::{Fragments, LANES, Shaded, Shading, State};
+use crate::multisample::{SAMPLES, place_of};
 use crate::target::{ColorPlane, Target};
 
 /// Colours fragments and merges them into the pixels. Called from several threads at once; what it
@@ -120,10 +121,15 @@ struct Copied {
 impl Copied {
     /// The pixels at (`x`, `y`) of a target whose first row is `first_row`.
     fn new(target: &Target<'_>, x: u32, y: u32, first_row: i32) -> Self {
+        Self::of(target, first_row, |i| (x as usize + i % 8, y as usize + i / 8))
+    }
+
+    /// The pixels of a target whose first row is `first_row`; `place` gives column and row of a lane.
+    fn of(target: &Target<'_>, first_row: i32, place: impl Fn(usize) -> (usize, usize)) -> Self {
         let (width, height) = (i64::from(target.width), i64::from(target.height));
         let at = std::array::from_fn(|i| {
-            let column = i64::from(x) + (i % 8) as i64;
-            let row = i64::from(y) + (i / 8) as i64 - i64::from(first_row);
+            let (column, row) = place(i);
+            let (column, row) = (column as i64, row as i64 - i64::from(first_row));
             let inside = column < width && (0..height).contains(&row);
             inside.then(|| (row * width + column) as usize)
         });
@@ -155,6 +161,25 @@ impl Copied {
         }
     }
 
+    /// Writes what a stage has made of the pixels, and depth and identifiers of those that passed.
+    fn finish(
+        &mut self,
+        target: &mut Target<'_>,
+        state: &State,
+        needs: &StageNeeds,
+        fragments: &Fragments<'_>,
+        passed: u16,
+    ) {
+        let written = || (0..LANES).filter(|i| passed >> i & 1 == 1);
+        if state.depth_write && !needs.tests_depth {
+            written().for_each(|i| self.depth[i] = fragments.depth[i]);
+        }
+        self.put_back(target, fragments.mask);
+        if let Some(ids) = &mut target.ids {
+            written().filter_map(|i| self.at[i]).for_each(|at| ids[at] = fragments.id);
+        }
+    }
+
     fn put_back(&self, target: &mut Target<'_>, lanes: u16) {
         for i in (0..LANES).filter(|i| lanes >> i & 1 == 1) {
             let Some(at) = self.at[i] else { continue };
@@ -171,6 +196,38 @@ impl Copied {
             }
         }
     }
+}
+
+/// Runs a stage on 4 x 4 pixels of several samples: the plain form. `fragments` says which pixels are to
+/// be coloured, `masks` and `depths` which samples are covered, and have passed the depth test if that
+/// is not the stage's business. Returns how many samples passed.
+pub(crate) fn run_stage_on_samples(
+    stage: &dyn FragmentStage,
+    target: &mut Target<'_>,
+    first_row: i32,
+    state: &State,
+    fragments: &Fragments<'_>,
+    masks: &[u16; SAMPLES],
+    depths: &[[f32; LANES]; SAMPLES],
+) -> u64 {
+    let needs = StageNeeds::of(stage);
+    let mut shaded = Shaded::default();
+    if needs.shades {
+        stage.shade(fragments, &mut shaded);
+    }
+    let corner = [2 * fragments.x as usize, 2 * fragments.y as usize];
+    let mut count = 0;
+    for s in (0..SAMPLES).filter(|&s| masks[s] & shaded.keep != 0) {
+        let sample = Fragments { mask: masks[s] & shaded.keep, depth: depths[s], ..*fragments };
+        let mut copied = Copied::of(target, first_row, |i| {
+            let (x, y) = place_of(s, i);
+            (corner[0] + x, corner[1] + y)
+        });
+        let passed = stage.merge(&sample, &shaded, &mut copied.pixels(target, &needs)) & sample.mask;
+        copied.finish(target, state, &needs, &sample, passed);
+        count += u64::from(passed.count_ones());
+    }
+    count
 }
 
 /// Runs a stage on a batch whose depth has been tested if that is not the stage's business: the plain
@@ -193,15 +250,6 @@ pub(crate) fn run_stage(
     }
     let mut copied = Copied::new(target, fragments.x, fragments.y, first_row);
     let passed = stage.merge(&kept, &shaded, &mut copied.pixels(target, &needs)) & kept.mask;
-    if state.depth_write && !needs.tests_depth {
-        for i in (0..LANES).filter(|i| passed >> i & 1 == 1) {
-            copied.depth[i] = fragments.depth[i];
-        }
-    }
-    copied.put_back(target, kept.mask);
-    if let Some(ids) = &mut target.ids {
-        let written = (0..LANES).filter(|i| passed >> i & 1 == 1);
-        written.filter_map(|i| copied.at[i]).for_each(|at| ids[at] = fragments.id);
-    }
+    copied.finish(target, state, &needs, &kept, passed);
     passed
 }

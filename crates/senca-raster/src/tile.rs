@@ -6,6 +6,7 @@
 
 use crate::api::LANES;
 use crate::bin::TILE;
+use crate::multisample;
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
 
 /// Blocks up to which a tile is stored block by block instead of row by row.
@@ -111,6 +112,8 @@ pub(crate) struct Touches {
     pub(crate) stencil: bool,
     /// Whether the depth test passes only what is farther.
     pub(crate) reversed: bool,
+    /// Whether blocks are kept sample by sample; see [`crate::multisample`].
+    pub(crate) samples: bool,
 }
 
 /// The tile being drawn.
@@ -193,6 +196,32 @@ impl TileBuffer {
                 None => fetch_plane(&mut self.ids[block], plane, band, tile_x, block),
             }
         }
+        if touches.samples {
+            self.turn(band, block, touches, true);
+        }
+    }
+
+    /// Does `turn` to every plane of a block that is there.
+    fn turn(&mut self, band: &Band<'_>, block: usize, touches: &Touches, to_samples: bool) {
+        fn turn<T: Copy>(block: &mut Block<T>, to_samples: bool) {
+            if to_samples { multisample::to_samples(block) } else { multisample::to_rows(block) }
+        }
+        match band.color {
+            Some(ColorPlane::Rgba8(_)) if touches.color => turn(&mut self.rgba8[block], to_samples),
+            Some(ColorPlane::Rgba32F(_)) if touches.color => {
+                self.rgba.iter_mut().for_each(|plane| turn(&mut plane[block], to_samples));
+            }
+            _ => {}
+        }
+        if band.depth.is_some() {
+            turn(&mut self.depth[block], to_samples);
+        }
+        if band.stencil.is_some() && touches.stencil {
+            turn(&mut self.stencil[block], to_samples);
+        }
+        if band.ids.is_some() {
+            turn(&mut self.ids[block], to_samples);
+        }
     }
 
     fn clear_color(&mut self, block: usize, rgba: [f32; 4], band: &Band<'_>) {
@@ -239,6 +268,10 @@ impl TileBuffer {
         let present = std::mem::take(&mut self.present);
         if present == 0 && clear.is_none() {
             return;
+        }
+        if touches.samples {
+            let blocks = (0..BLOCKS * BLOCKS).filter(|block| present >> block & 1 == 1);
+            blocks.for_each(|block| self.turn(band, block, touches, false));
         }
         let rows = Rows { width, height, tile_x, present };
         let color = clear.and_then(|c| c.color);

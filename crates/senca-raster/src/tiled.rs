@@ -176,6 +176,7 @@ fn pass<'a>(
             depth: has_depth && (state.depth_write || needs.tests_depth),
             stencil: needs.stencil,
             reversed,
+            samples: state.multisample && stage.is_some(),
         },
         format,
         stage,

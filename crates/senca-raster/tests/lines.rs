@@ -171,6 +171,7 @@ const OPENGL: State = State {
     point_sizes: None,
     strokes: StrokeRule::OpenGl,
     stipple: None,
+    multisample: false,
     antialias: false,
 };
 

@@ -147,20 +147,21 @@ fn both_rasterizers_run_stages_alike() {
                 scissor: (k == 3).then_some(Rect { x: 3, y: 5, width: 60, height: 50 }),
                 ..State::default()
             };
-            let draw = |rasterizer: &mut dyn Rasterizer, floats: bool| {
-                let mut planes = Planes::new([101, 77], 0.5);
+            let draw = |rasterizer: &mut dyn Rasterizer, floats: bool, multisample: bool| {
+                let mut planes = Planes::new(if multisample { [102, 78] } else { [101, 77] }, 0.5);
+                let state = State { multisample, ..state };
                 let c = rasterizer.draw(&mut planes.target(floats), &p, &state, &Shading::Stage(&stage));
                 let l =
                     rasterizer.draw_lines(&mut planes.target(floats), &p, &state, &Shading::Stage(&stage));
                 (planes.bits(), c.passed, l.passed)
             };
-            for floats in [false, true] {
-                let plain = draw(&mut ScanlineRasterizer, floats);
+            for (floats, multisample) in [(false, false), (true, false), (false, true), (true, true)] {
+                let plain = draw(&mut ScanlineRasterizer, floats, multisample);
                 assert!(plain.1 > 0 && plain.2 > 0);
                 for threads in [1, 3] {
                     let settings = TiledSettings { threads, ..TiledSettings::default() };
-                    let tiled = draw(&mut TiledRasterizer::new(settings), floats);
-                    assert!(plain == tiled, "{compare:?}, {k}, {threads} threads");
+                    let tiled = draw(&mut TiledRasterizer::new(settings), floats, multisample);
+                    assert!(plain == tiled, "{compare:?}, {k}, {threads} threads, {multisample}");
                 }
             }
         }

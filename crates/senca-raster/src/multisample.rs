@@ -1,0 +1,210 @@
+//! Several samples per pixel: a target of twice as many rows and columns, whose squares of 2 x 2 are the
+//! samples of one pixel. Coverage and depth are found for every sample as for pixels of their own;
+//! a stage gives colours once per pixel.
+//!
+//! A block of 8 x 8 samples is 4 x 4 pixels. While a tile is drawn, vector `s` of a block holds sample
+//! `s` of its sixteen pixels, row by row: sample 0 upper left, 1 upper right, 2 and 3 below.
+
+use crate::api::{Fragments, LANES, MAX_VARYINGS, Shaded};
+use crate::cover::{Place, TileDraw, varying};
+use crate::tile::{BLOCKS, Block};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
+
+/// Samples of a pixel.
+pub(crate) const SAMPLES: usize = 4;
+
+/// Column and row of each lane's first sample in its block.
+const LANE_X: [i32; LANES] = [0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6];
+const LANE_Y: [i32; LANES] = [0, 0, 0, 0, 2, 2, 2, 2, 4, 4, 4, 4, 6, 6, 6, 6];
+
+/// Sample and lane of column `x`, row `y` of a block.
+pub(crate) fn sample_of(x: usize, y: usize) -> (usize, usize) {
+    ((y & 1) * 2 + (x & 1), (y % 8 / 2) * 4 + x % 8 / 2)
+}
+
+/// Column and row in its block of a lane's sample.
+pub(crate) fn place_of(sample: usize, lane: usize) -> (usize, usize) {
+    (lane % 4 * 2 + (sample & 1), lane / 4 * 2 + (sample >> 1))
+}
+
+/// A block stored row by row, sample by sample.
+pub(crate) fn to_samples<T: Copy>(block: &mut Block<T>) {
+    let rows = *block;
+    for (s, vector) in block.iter_mut().enumerate() {
+        for (lane, to) in vector.iter_mut().enumerate() {
+            let (x, y) = place_of(s, lane);
+            *to = rows[y / 2][y % 2 * 8 + x];
+        }
+    }
+}
+
+/// The inverse of [`to_samples`].
+pub(crate) fn to_rows<T: Copy>(block: &mut Block<T>) {
+    let samples = *block;
+    for (pair, vector) in block.iter_mut().enumerate() {
+        for (lane, to) in vector.iter_mut().enumerate() {
+            let (s, from) = sample_of(lane % 8, 2 * pair + lane / 8);
+            *to = samples[s][from];
+        }
+    }
+}
+
+impl<const FAST: bool> TileDraw<'_, '_, FAST> {
+    /// Draws a triangle's samples of a block of 4 x 4 pixels.
+    #[inline(always)]
+    pub(crate) fn block_of_samples<S: Simd>(&mut self, simd: S, lane: usize, [bx, by]: [i32; 2], full: bool) {
+        let block = (8 * by + bx) as usize & 63;
+        let (mut masks, mut depths) = ([0u16; SAMPLES], [[0.0; LANES]; SAMPLES]);
+        for s in 0..SAMPLES {
+            let corner = [8 * bx + (s as i32 & 1), 8 * by + (s as i32 >> 1)];
+            let inside = self.samples_inside(simd, lane, corner, full);
+            self.counts.tested += u64::from(inside.to_bitmask().count_ones());
+            let z = self.samples_depth(simd, lane, corner.map(|c| c as f32));
+            let mut pass = inside;
+            if self.pass.has_depth {
+                let stored = f32x16::load_array_ref(simd, &self.buffer.depth[block][s]);
+                pass &= crate::cover::compare(simd, self.pass.state.depth_test, z, stored);
+            }
+            masks[s] = pass.to_bitmask() as u16;
+            z.store_array(&mut depths[s]);
+        }
+        let any = masks.iter().fold(0, |any, mask| any | mask);
+        if any != 0 {
+            self.shade_samples(simd, Place { lane, block, pair: 0 }, any, &masks, &depths);
+        }
+    }
+
+    /// Lanes whose sample, that of lane 0 being at `corner` of the tile, may be drawn.
+    #[inline(always)]
+    fn samples_inside<S: Simd>(&self, simd: S, lane: usize, [x, y]: [i32; 2], full: bool) -> mask32x16<S> {
+        let mut inside = mask32x16::splat(simd, true);
+        if full {
+            return inside;
+        }
+        let (column, row) = (i32x16::load_array(simd, LANE_X), i32x16::load_array(simd, LANE_Y));
+        let b = &*self.batch;
+        let mut all = i32x16::splat(simd, 0);
+        for k in 0..3 {
+            let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
+            let first = b.edge[k][lane].wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y));
+            let edge =
+                column * i32x16::splat(simd, dx) + row * i32x16::splat(simd, dy) + i32x16::splat(simd, first);
+            all = all | edge;
+        }
+        inside &= all.simd_ge(i32x16::splat(simd, 0));
+        if self.partial {
+            let b = &self.bounds;
+            let column = column + i32x16::splat(simd, self.tile[0] + x);
+            let row = row + i32x16::splat(simd, self.tile[1] + y);
+            inside &= column.simd_ge(i32x16::splat(simd, b.x0))
+                & column.simd_lt(i32x16::splat(simd, b.x1))
+                & row.simd_ge(i32x16::splat(simd, b.y0))
+                & row.simd_lt(i32x16::splat(simd, b.y1));
+        }
+        inside
+    }
+
+    /// Samples from the reference of the triangle, lane 0 being at `corner` of the tile.
+    #[inline(always)]
+    fn samples_at<S: Simd>(&self, simd: S, lane: usize, [x, y]: [f32; 2]) -> [f32x16<S>; 2] {
+        let b = &self.batch.offset;
+        let (ox, oy) = (b[0][lane] as f32 + x, b[1][lane] as f32 + y);
+        let lanes = |of: [i32; LANES]| i32x16::load_array(simd, of).to_float::<f32x16<S>>();
+        [lanes(LANE_X) + f32x16::splat(simd, ox), lanes(LANE_Y) + f32x16::splat(simd, oy)]
+    }
+
+    #[inline(always)]
+    fn samples_depth<S: Simd>(&self, simd: S, lane: usize, corner: [f32; 2]) -> f32x16<S> {
+        let b = &*self.batch;
+        let [fx, fy] = self.samples_at(simd, lane, corner);
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let z = (splat(b.depth[0][lane]) + splat(b.depth[2][lane]) * fy) + splat(b.depth[1][lane]) * fx;
+        z.max(splat(b.z_min[lane])).min(splat(b.z_max[lane]))
+    }
+
+    /// Colours the pixels of `any` and merges their samples.
+    #[inline(always)]
+    fn shade_samples<S: Simd>(
+        &mut self,
+        simd: S,
+        place: Place,
+        any: u16,
+        masks: &[u16; SAMPLES],
+        depths: &[[f32; LANES]; SAMPLES],
+    ) {
+        let Some(stage) = self.pass.stage else { return };
+        let Place { lane, block, .. } = place;
+        let (mut values, mut count) = ([[0.0; LANES]; MAX_VARYINGS], 0);
+        let mut depth = [0.0; LANES];
+        if self.pass.needs.shades {
+            count = self.pass.slots.len().min(MAX_VARYINGS);
+            // At the middle of the pixel, between its samples.
+            let corner = [block % BLOCKS * 8, block / BLOCKS * 8].map(|c| c as f32 + 0.5);
+            self.samples_depth(simd, lane, corner).store_array(&mut depth);
+            let [fx, fy] = self.samples_at(simd, lane, corner);
+            let at = self.at(simd, lane, fx, fy);
+            for (slot, value) in values.iter_mut().enumerate().take(count) {
+                varying(simd, &self.batch.varyings[slot], lane, &at).store_array(value);
+            }
+        }
+        let fragments = Fragments {
+            x: (self.tile[0] as usize + block % BLOCKS * 8) as u32 / 2,
+            y: (self.tile[1] as usize + block / BLOCKS * 8) as u32 / 2,
+            columns: 4,
+            mask: any,
+            depth,
+            varyings: &values[..count],
+            id: self.batch.ids[lane],
+            front: self.batch.swapped >> lane & 1 == 1,
+            coverage: None,
+        };
+        let mut shaded = Shaded::default();
+        self.counts.shaded += u64::from(any.count_ones());
+        if self.pass.needs.shades {
+            stage.shade(&fragments, &mut shaded);
+        }
+        for s in 0..SAMPLES {
+            let mask = masks[s] & shaded.keep;
+            if mask == 0 {
+                continue;
+            }
+            let sample = Fragments { mask, depth: depths[s], ..fragments };
+            let place = Place { pair: s, ..place };
+            let passed = stage.merge(&sample, &shaded, &mut self.pixels(place)) & mask;
+            self.counts.passed += u64::from(passed.count_ones());
+            let keep = mask32x16::from_bitmask(simd, u64::from(passed));
+            if self.pass.writes_depth {
+                let plane = &mut self.buffer.depth[block][s];
+                let stored = f32x16::load_array_ref(simd, plane);
+                keep.select(f32x16::load_array_ref(simd, &depths[s]), stored).store_array(plane);
+            }
+            if !FAST && self.pass.has_ids {
+                let plane = &mut self.buffer.ids[block][s];
+                let stored = u32x16::load_array_ref(simd, plane);
+                keep.select(u32x16::splat(simd, self.batch.ids[lane]), stored).store_array(plane);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_turn_to_samples_and_back() {
+        let rows: Block<usize> = std::array::from_fn(|pair| std::array::from_fn(|i| 16 * pair + i));
+        let mut block = rows;
+        to_samples(&mut block);
+        // Sample 3 of pixel (1, 2) is in column 3, row 5.
+        assert_eq!(block[3][9], 5 * 8 + 3);
+        for y in 0..8 {
+            for x in 0..8 {
+                let (s, lane) = sample_of(x, y);
+                assert_eq!((block[s][lane], place_of(s, lane)), (8 * y + x, (x, y)));
+            }
+        }
+        to_rows(&mut block);
+        assert_eq!(block, rows);
+    }
+}
