@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use senca_math::glam::DVec3;
 use senca_math::{Control, LinearRgb};
 use senca_radiosity::{
-    CacheSettings, DirectGather, DirectLight, ElementMesh, GatherSettings, HierarchySettings, MeshSettings,
-    Occluders, ReflectedGather, regather_reflected, solve_hierarchy,
+    DirectLight, ElementMesh, Gather, GatherSettings, HierarchySettings, MeshSettings, Occluders,
+    regather_reflected, solve_hierarchy,
 };
 use senca_trace::PrimaryRays;
 
@@ -30,8 +30,7 @@ struct Picture<'a> {
     rays: PrimaryRays,
     mesh: &'a ElementMesh,
     occluders: &'a Occluders,
-    direct: DirectGather<'a>,
-    reflected: ReflectedGather<'a>,
+    gather: Gather<'a>,
     size: u32,
 }
 
@@ -52,7 +51,7 @@ impl Picture<'_> {
             return Shown { color: [0.0; 3], polygon: u32::MAX };
         };
         let surface = self.mesh.surface(polygon);
-        let incident: LinearRgb = self.direct.at(place, normal, key) + self.reflected.at(place, normal);
+        let incident: LinearRgb = self.gather.at(place, normal, key);
         let shown = surface.emission + surface.reflectance * incident;
         Shown { color: shown.to_array(), polygon }
     }
@@ -63,7 +62,7 @@ impl Picture<'_> {
         let seen: Vec<Option<(u32, DVec3, DVec3)>> = (0..n * n).into_par_iter().map(of).collect();
         let places: Vec<(DVec3, DVec3)> =
             seen.iter().flatten().map(|&(_, place, normal)| (place, normal)).collect();
-        self.reflected.prepare(&places, &Control::default()).map_err(|_| "cancelled")?;
+        self.gather.prepare(&places, &Control::default()).map_err(|_| "cancelled")?;
         Ok(())
     }
 
@@ -122,7 +121,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         settings.threshold = text.parse()?;
     }
     let threads = rest.get(2).map_or(Ok(0), |text| text.parse())?;
-    let mut cache = CacheSettings::default();
+    let mut cache = GatherSettings::default();
     if let Some(text) = rest.get(3) {
         cache.rings = text.parse()?;
     }
@@ -142,21 +141,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let solved = start.elapsed().as_secs_f64();
     println!("{:?}", solution.report);
     let occluders = Occluders::new(&solution.mesh)?;
-    regather_reflected(&mut solution, &occluders, 64, &Control::default()).map_err(|_| "cancelled")?;
+    regather_reflected(&mut solution, &occluders, 16, &Control::default()).map_err(|_| "cancelled")?;
     println!("{:.3} s to gather on leaves", start.elapsed().as_secs_f64() - solved);
     let mut picture = Picture {
         rays: PrimaryRays::new(&cornell::view(), size, size),
         mesh: &solution.mesh,
         occluders: &occluders,
-        direct: DirectGather::new(&solution.mesh, &light, &occluders, &GatherSettings::default()),
-        reflected: ReflectedGather::new(&solution, &occluders, &cache)?,
+        gather: Gather::new(&solution, &light, &occluders, &cache)?,
         size,
     };
     picture.prepare()?;
     println!(
         "{:.3} s to gather at {} places",
         start.elapsed().as_secs_f64() - solved,
-        picture.reflected.len()
+        picture.gather.found()
     );
     let pixels = picture.pixels();
     let seconds = start.elapsed().as_secs_f64();

@@ -21,7 +21,7 @@ pub use finder::{ElementFinder, Place};
 pub(crate) use shown_scene::add_cameras;
 pub use shown_scene::{ShownColors, shown_scene};
 pub(crate) use surface_light::matt_share;
-pub use surface_light::{Look, MeshLines, ShownLight};
+pub use surface_light::{Look, MeshLines, SeenPlaces, ShownLight};
 
 /// What is taken for the light between the nodes of an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,218 +1,156 @@
-//! Light at a single place, for pictures that are to stand beside those of a path tracer.
+//! Light at single places, for pictures that are to stand beside those of a path tracer.
 //!
-//! Elements are too coarse for the borders of shadows. So the light that comes straight from emitters
-//! and lamps is found anew at each place ([`DirectGather`]): the share of the hemisphere that an
-//! emitter takes up by Lambert's formula, and how much of the emitter is seen by rays. Rays to its
-//! corners and its middle tell whether all of it is seen, or none; only in half-shadows more are sent,
-//! spread over cells of the emitter. The rest of the light is smooth: it is taken from the solution,
-//! between nodes ([`IndirectField`]), or more exactly by rays that end on the solution
-//! ([`ReflectedGather`]).
+//! Elements are too coarse for the borders of shadows. So what arrives at a place is gathered once more
+//! there ([`Gather`]), in three parts that are known in different ways:
+//!
+//! 1. Emitters: the share of the hemisphere that each takes up, by Lambert's formula. What is in between
+//!    is cut out of it, so that half-shadows have no noise ([`visible`]); only where much is in between,
+//!    or glass, rays to cells of the emitter tell how much of it is seen.
+//! 2. Lamps without extent, and the sky: by rays ([`DirectLight`]).
+//! 3. What surfaces reflect: by rays that end on the solution. As it changes slowly, it is found at few
+//!    places, and carried along its gradients to those between ([`cache`]).
 //!
 //! Source: the second pass of Smits, Arvo and Greenberg 1994, section 5, called local pass or final
 //! gather by others.
 
 mod cache;
+mod direct;
+#[cfg(test)]
+mod tests;
+mod visible;
 
 use rayon::prelude::*;
 use senca_math::glam::DVec3;
 use senca_math::{Cancelled, Control, LinearRgb};
-use smallvec::SmallVec;
 
-use crate::hierarchy::facet::Facet;
-use crate::{DirectLight, ElementMesh, Extrapolation, Occluders, Solution};
+use crate::{DirectLight, ElementMesh, Occluders, RadiosityError, Solution};
+use cache::ReflectedGather;
+use direct::DirectGather;
 
-pub use cache::{CacheSettings, ReflectedGather};
-
-/// How light is found at single places.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How light is gathered at single places.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GatherSettings {
-    /// Rays to each emitter that is seen in part are the square of this, 1 to 64. Default 8.
+    /// Where an emitter is looked at by rays, they are the square of this, 1 to 64. Default 8.
     pub cells: u32,
     /// Emitters that are looked at one by one, at most; of the others a few are, and stand for the rest.
     /// Default 16.
     pub emitters: usize,
+    /// Rays for reflected light per place where it is found are three times the square of this, 2 to 64.
+    /// Default 10.
+    pub rings: u32,
+    /// How far reflected light is carried, as a share of the distance of what is around, in (0, 1].
+    /// Default 0.15. Half of it makes about four times the places.
+    pub reach: f64,
+    /// Reflected light is carried at least so far, in world units, > 0; about what two pixels show is
+    /// right. Default `None`: 1/1000 of the diagonal of the scene.
+    pub least: Option<f64>,
 }
 
 impl Default for GatherSettings {
     fn default() -> Self {
-        Self { cells: 8, emitters: 16 }
+        Self { cells: 8, emitters: 16, rings: 10, reach: 0.15, least: None }
     }
 }
 
-/// Of the emitters that are not looked at one by one, so many are.
-const STANDING_FOR_THE_REST: usize = 4;
+impl GatherSettings {
+    /// `Ok` when every number is in its range.
+    ///
+    /// # Errors
+    /// [`RadiosityError::Setting`].
+    pub fn check(&self) -> Result<(), RadiosityError> {
+        let refuse = |name, value, expected| Err(RadiosityError::Setting { name, value, expected });
+        if !(1..=64).contains(&self.cells) {
+            return refuse("cells of emitters", self.cells.into(), "from 1 to 64");
+        }
+        if !(2..=64).contains(&self.rings) {
+            return refuse("rings of rays", self.rings.into(), "from 2 to 64");
+        }
+        if !(self.reach > 0.0 && self.reach <= 1.0) {
+            return refuse("reach of found light", self.reach, "above 0 and at most 1");
+        }
+        match self.least {
+            Some(least) if !(least > 0.0 && least.is_finite()) => {
+                refuse("least reach of found light", least, "above 0 and finite")
+            }
+            _ => Ok(()),
+        }
+    }
+}
 
-/// How far from the corners, as a share of the way to the middle, emitters are looked at there.
-const INSET: f64 = 0.01;
-
-/// Light that comes straight from emitters, lamps and the sky, at any place.
+/// Tells the light that arrives at any place. Shared by all threads.
 #[derive(Clone, Debug)]
-pub struct DirectGather<'a> {
+pub struct Gather<'a> {
+    solution: &'a Solution,
     occluders: &'a Occluders,
-    emitters: Vec<(Facet, LinearRgb)>,
-    others: DirectLight,
-    settings: GatherSettings,
+    direct: DirectGather<'a>,
+    reflected: ReflectedGather<'a>,
 }
 
-/// An emitter as seen from a place.
-#[derive(Clone, Copy, Debug)]
-struct Seen {
-    emitter: usize,
-    /// Form factor of the place to it.
-    share: f64,
-    /// That times what it shows; the largest channel.
-    strength: f64,
-}
-
-impl<'a> DirectGather<'a> {
-    /// For the emitters of `mesh` and for `light`.
-    #[must_use]
+impl<'a> Gather<'a> {
+    /// From light on surfaces, lamps, and what is in the way.
+    ///
+    /// # Errors
+    /// [`RadiosityError::Setting`].
     pub fn new(
-        mesh: &ElementMesh,
+        solution: &'a Solution,
         light: &DirectLight,
         occluders: &'a Occluders,
         settings: &GatherSettings,
-    ) -> Self {
-        let mut others = light.clone();
-        let rectangles = others.take_plain_areas();
-        let shine =
-            (0..mesh.polygons().len() as u32).filter(|&p| mesh.surface(p).emission != LinearRgb::BLACK);
-        let own = shine.map(|polygon| (Facet::of(mesh, polygon), mesh.surface(polygon).emission));
-        let lamps = rectangles.into_iter().map(|(shape, shows)| (Facet::of_polygon(shape), shows));
-        let settings = GatherSettings { cells: settings.cells.clamp(1, 64), ..*settings };
-        Self { occluders, emitters: own.chain(lamps).collect(), others, settings }
+    ) -> Result<Self, RadiosityError> {
+        settings.check()?;
+        Ok(Self {
+            solution,
+            occluders,
+            direct: DirectGather::new(&solution.mesh, light, occluders, settings),
+            reflected: ReflectedGather::new(solution, occluders, settings),
+        })
     }
 
-    /// Light that arrives at a place on a surface with this unit normal: what a white matt surface
-    /// would show there. `key` says where in the cells of emitters rays end; pixels and samples should
-    /// differ in it.
+    /// Finds reflected light so that it can be carried to each of `places`, which come with their unit
+    /// normals: where [`Gather::at`] will be asked, or near. Without it light is found anew at each
+    /// place. What is found does not depend on the threads of the current rayon pool.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn prepare(&mut self, places: &[(DVec3, DVec3)], control: &Control<'_>) -> Result<(), Cancelled> {
+        let blockers = self.direct.blockers();
+        let clear = |&(place, normal): &(DVec3, DVec3)| (blockers.clear_of(place, normal), normal);
+        let places: Vec<(DVec3, DVec3)> = places.par_iter().with_min_len(256).map(clear).collect();
+        self.reflected.prepare(&places, blockers, control)
+    }
+
+    /// Number of places where reflected light was found.
+    #[must_use]
+    pub fn found(&self) -> usize {
+        self.reflected.len()
+    }
+
+    /// Light that arrives at a place on a surface with this unit normal: what a white matt surface would
+    /// show there. Reflected light is carried there if it was prepared. `key` spreads rays; places
+    /// should differ in it.
     #[must_use]
     pub fn at(&self, place: DVec3, normal: DVec3, key: u64) -> LinearRgb {
-        let mut seen: Vec<Seen> = Vec::new();
-        for (emitter, (facet, shows)) in self.emitters.iter().enumerate() {
-            let share = facet.share_at(place, normal);
-            if share > 0.0 {
-                let strength = share * f64::from(shows.max_component());
-                seen.push(Seen { emitter, share, strength });
-            }
-        }
-        if seen.len() > self.settings.emitters {
-            seen.sort_by(|a, b| b.strength.total_cmp(&a.strength));
-        }
-        let (strong, weak) = seen.split_at(self.settings.emitters.min(seen.len()));
-        let one_by_one = strong.iter().map(|seen| self.light_of(seen, place, normal, key));
-        let sum = one_by_one.fold(LinearRgb::BLACK, |sum, light| sum + light);
-        sum + self.rest(weak, place, normal, key) + self.others.at(self.occluders, place, normal)
+        let place = self.direct.blockers().clear_of(place, normal);
+        self.direct.at(place, normal, key) + self.reflected.at(place, normal)
     }
 
-    /// All of what `weak` sends, times the mean visibility of some, taken at even steps of strength.
-    fn rest(&self, weak: &[Seen], place: DVec3, normal: DVec3, key: u64) -> LinearRgb {
-        let whole = |seen: &Seen| self.emitters[seen.emitter].1 * seen.share as f32;
-        let total: f64 = weak.iter().map(|seen| seen.strength).sum();
-        if total <= 0.0 {
-            return LinearRgb::BLACK;
-        }
-        let (mut open, mut passed, mut next) = (0.0, 0.0, unit_hash(key) / STANDING_FOR_THE_REST as f64);
-        for seen in weak {
-            passed += seen.strength / total;
-            while next < passed {
-                open += self.open_share(seen.emitter, place, normal, key);
-                next += 1.0 / STANDING_FOR_THE_REST as f64;
-            }
-        }
-        let all = weak.iter().map(whole).fold(LinearRgb::BLACK, |sum, light| sum + light);
-        all * (open / STANDING_FOR_THE_REST as f64) as f32
-    }
-
-    fn light_of(&self, seen: &Seen, place: DVec3, normal: DVec3, key: u64) -> LinearRgb {
-        let open = self.open_share(seen.emitter, place, normal, key);
-        self.emitters[seen.emitter].1 * (seen.share * open) as f32
-    }
-
-    /// Share of an emitter's light that arrives.
-    fn open_share(&self, emitter: usize, place: DVec3, normal: DVec3, key: u64) -> f64 {
-        let facet = &self.emitters[emitter].0;
-        let corners = facet.shape.corners().iter().map(|corner| corner.lerp(facet.center, INSET));
-        let above = |at: &DVec3| normal.dot(*at - place) > 0.0;
-        let probes = corners.chain([facet.center]).filter(above);
-        let passing: SmallVec<[f64; 5]> = probes.map(|at| self.passing(place, at)).collect();
-        match passing.first() {
-            Some(&first) if passing.iter().all(|&p| p == first) && (first == 0.0 || first == 1.0) => first,
-            _ => self.sampled_share(facet, place, normal, key ^ (emitter as u64) << 48),
-        }
-    }
-
-    /// The same by one ray to each cell.
-    fn sampled_share(&self, facet: &Facet, place: DVec3, normal: DVec3, key: u64) -> f64 {
-        let cells = self.settings.cells;
-        let (mut all, mut seen) = (0.0, 0.0);
-        for cell in 0..cells * cells {
-            let bits = mix(key.wrapping_add(u64::from(cell) << 40));
-            let jitter = [bits, bits >> 32].map(|b| f64::from(b as u32) / 4_294_967_296.0);
-            let [u, v] = [(cell % cells, jitter[0]), (cell / cells, jitter[1])]
-                .map(|(i, within)| (f64::from(i) + within) / f64::from(cells));
-            let at = facet.shape.place(u, v);
-            let way = at - place;
-            let squared = way.length_squared();
-            let carried = normal.dot(way).max(0.0) * facet.normal.dot(-way).max(0.0) / (squared * squared);
-            if carried > 0.0 && carried.is_finite() {
-                all += carried;
-                seen += carried * self.passing(place, at);
-            }
-        }
-        if all > 0.0 { seen / all } else { 0.0 }
-    }
-
-    fn passing(&self, place: DVec3, at: DVec3) -> f64 {
-        if self.occluders.all_opaque() {
-            return if self.occluders.visible(place, at) { 1.0 } else { 0.0 };
-        }
-        let share = self.occluders.transmittance(place, at);
-        f64::from(share.r + share.g + share.b) / 3.0
-    }
-}
-
-/// Light that came by way of other surfaces, between the nodes of the elements.
-#[derive(Clone, Debug)]
-pub struct IndirectField<'a> {
-    mesh: &'a ElementMesh,
-    /// Of each vertex.
-    light: Vec<LinearRgb>,
-}
-
-impl<'a> IndirectField<'a> {
-    /// Of a solution.
+    /// The same with reflected light found anew by `rays` rays.
     #[must_use]
-    pub fn new(solution: &'a Solution) -> Self {
-        let nodes = solution.node_values(Extrapolation::Clamped);
-        let rest = |(&all, &direct): (&LinearRgb, &LinearRgb)| {
-            LinearRgb::new(
-                (all.r - direct.r).max(0.0),
-                (all.g - direct.g).max(0.0),
-                (all.b - direct.b).max(0.0),
-            )
-        };
-        Self { mesh: &solution.mesh, light: nodes.incident.iter().zip(&nodes.direct).map(rest).collect() }
-    }
-
-    /// Light at a place of a polygon.
-    #[must_use]
-    pub fn at(&self, polygon: u32, place: DVec3) -> LinearRgb {
-        let leaf = leaf_at(self.mesh, polygon, place);
-        let shape = self.mesh.shape(leaf);
-        let weights = corner_weights(shape.corners(), self.mesh.normal(leaf), place);
-        let corners = self.mesh.elements()[leaf as usize].corners();
-        let sum: f64 = weights.iter().sum();
-        let shares = corners.iter().zip(&weights);
-        shares.fold(LinearRgb::BLACK, |light, (&v, w)| light + self.light[v as usize] * (w / sum) as f32)
+    pub fn afresh(&self, place: DVec3, normal: DVec3, rays: u32, key: u64) -> LinearRgb {
+        let place = self.direct.blockers().clear_of(place, normal);
+        let reflected = gather_reflected(self.solution, self.occluders, place, normal, rays, key);
+        self.direct.at(place, normal, key) + reflected
     }
 }
+
+/// Thin panes that a ray goes through at most.
+const MOST_PANES: usize = 8;
 
 /// Light that surfaces reflect to a place, by rays spread evenly over the hemisphere as the cosine
 /// weighs them: what a white matt surface with this unit normal would show of it. Emission does not
 /// count. `key` turns the directions.
 #[must_use]
-pub fn gather_reflected(
+fn gather_reflected(
     solution: &Solution,
     occluders: &Occluders,
     place: DVec3,
@@ -225,7 +163,8 @@ pub fn gather_reflected(
     let light = |ray: u32| {
         let ring = (f64::from(ray) + shift[0]) / f64::from(rays);
         let part = (f64::from(ray) * 0.618_033_988_749_895 + shift[1]).fract();
-        reflected_from(solution, occluders, place, frame.cosine_weighted(ring, part)).unwrap_or_default()
+        reflected_along(solution, occluders, place, frame.cosine_weighted(ring, part))
+            .map_or(LinearRgb::BLACK, |met| met.light)
     };
     let sum = (0..rays).fold(LinearRgb::BLACK, |sum, ray| sum + light(ray));
     sum * (rays.max(1) as f32).recip()
@@ -268,22 +207,47 @@ fn gather_on_leaf(solution: &Solution, occluders: &Occluders, leaf: u32, rays: u
         let ring = (f64::from(ray) + unit(b)) / f64::from(rays);
         let part = (f64::from(ray) * 0.618_033_988_749_895 + unit_hash(key)).fract();
         let place = shape.place(unit(a), unit(a >> 32));
-        reflected_from(solution, occluders, place, frame.cosine_weighted(ring, part)).unwrap_or_default()
+        reflected_along(solution, occluders, place, frame.cosine_weighted(ring, part))
+            .map_or(LinearRgb::BLACK, |met| met.light)
     };
     let sum = (0..rays).fold(LinearRgb::BLACK, |sum, ray| sum + light(ray));
     sum * (rays.max(1) as f32).recip()
 }
 
-/// Light that the surface which a ray meets reflects; `None` where it meets no front.
-fn reflected_from(
+/// What a ray meets.
+#[derive(Clone, Copy, Debug, Default)]
+struct Met {
+    /// What its surface reflects, through what lets light pass before it; black for backs.
+    light: LinearRgb,
+    /// In multiples of the direction.
+    distance: f64,
+}
+
+/// The first surface along a ray that lets no light pass, if any; thin panes are gone through, but not
+/// for ever.
+fn reflected_along(
     solution: &Solution,
     occluders: &Occluders,
     place: DVec3,
     direction: DVec3,
-) -> Option<LinearRgb> {
-    let hit = occluders.closest(place, direction).filter(|hit| hit.front)?;
-    let leaf = leaf_at(&solution.mesh, hit.polygon, place + hit.t * direction);
-    Some(solution.mesh.surface(leaf).reflectance * solution.incident[leaf as usize])
+) -> Option<Met> {
+    let (mut from, mut share, mut before) = (place, LinearRgb::WHITE, 0.0);
+    for _ in 0..MOST_PANES {
+        let hit = occluders.closest(from, direction)?;
+        let (point, distance) = (from + hit.t * direction, before + hit.t);
+        let surface = solution.mesh.surface(hit.polygon);
+        if surface.transmittance == LinearRgb::BLACK {
+            if !hit.front {
+                return Some(Met { light: LinearRgb::BLACK, distance });
+            }
+            let leaf = leaf_at(&solution.mesh, hit.polygon, point);
+            let light = share * surface.reflectance * solution.incident[leaf as usize];
+            return Some(Met { light, distance });
+        }
+        share = share * surface.transmittance;
+        (from, before) = (point, distance);
+    }
+    None
 }
 
 /// Directions around a normal.
@@ -338,23 +302,6 @@ fn inside_by(corners: &[DVec3], normal: DVec3, place: DVec3) -> f64 {
     edges.map(from_edge).fold(f64::INFINITY, f64::min)
 }
 
-/// Weights of the corners of a convex polygon at a place in it, as areas of triangles (Wachspress 1975):
-/// bilinear in a rectangle, barycentric in a triangle. Not normalized.
-fn corner_weights(corners: &[DVec3], normal: DVec3, place: DVec3) -> SmallVec<[f64; 4]> {
-    let count = corners.len();
-    let at = |k: usize| corners[k % count];
-    let area = |a: DVec3, b: DVec3, c: DVec3| normal.dot((b - a).cross(c - a));
-    let scale = area(at(0), at(1), at(2)).abs().max(f64::MIN_POSITIVE);
-    // On an edge the areas beside it vanish; a little of them keeps the weights finite.
-    let of_edge = |k: usize| area(place, at(k), at(k + 1)).max(1e-9 * scale);
-    (0..count)
-        .map(|k| {
-            let before = k + count - 1;
-            area(at(before), at(k), at(k + 1)) / (of_edge(before) * of_edge(k)) * scale
-        })
-        .collect()
-}
-
 /// Stirs 64 bits so that each depends on all (the finalizer of SplitMix, Steele et al. 2014).
 fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -364,136 +311,4 @@ fn mix(mut x: u64) -> u64 {
 
 fn unit_hash(bits: u64) -> f64 {
     f64::from((mix(bits) >> 32) as u32) / 4_294_967_296.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn quad(origin: [f64; 3], u: [f64; 3], v: [f64; 3]) -> [DVec3; 4] {
-        let [o, u, v] = [origin, u, v].map(DVec3::from_array);
-        [o, o + u, o + u + v, o + v]
-    }
-
-    /// A floor, a lamp of 1 x 1 at height 2 that looks down, and a plate below half of it.
-    fn scene() -> ElementMesh {
-        let floor = quad([-5.0, 0.0, -5.0], [0.0, 0.0, 10.0], [10.0, 0.0, 0.0]);
-        let lamp = quad([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
-        let plate = quad([0.0, 1.99, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0]);
-        let grey = LinearRgb::splat(0.5);
-        let polygons = [(floor, 0.0), (lamp, 10.0), (plate, 0.0)];
-        let polygons: Vec<_> = polygons.iter().map(|(c, e)| (&c[..], grey, LinearRgb::splat(*e))).collect();
-        ElementMesh::of_polygons(&polygons)
-    }
-
-    #[test]
-    fn a_half_hidden_lamp_gives_half_of_its_light() {
-        let mesh = scene();
-        let occluders = Occluders::new(&mesh).expect("few");
-        let gather =
-            DirectGather::new(&mesh, &DirectLight::default(), &occluders, &GatherSettings::default());
-        let light = |x: f64| f64::from(gather.at(DVec3::new(x, 0.0, 0.0), DVec3::Y, 7).g);
-        // The way to the lamp at height 2 passes the plate's edge at height 1.99 and x = 0.
-        let seen = |x: f64| {
-            let end = x - x / 0.995;
-            let part =
-                crate::PatchPolygon::quad(quad([-0.5, 2.0, -0.5], [0.5 + end, 0.0, 0.0], [0.0, 0.0, 1.0]));
-            10.0 * Facet::of_polygon(part).share_at(DVec3::new(x, 0.0, 0.0), DVec3::Y)
-        };
-        for (x, bound) in [(0.0, 0.03), (-1.0, 0.06), (-4.0, 0.06)] {
-            assert!((light(x) / seen(x) - 1.0).abs() < bound, "{} {}", light(x), seen(x));
-        }
-        assert_eq!(gather.at(DVec3::new(0.1, 3.0, 0.0), DVec3::Y, 7), LinearRgb::BLACK);
-        // Below the plate nothing is seen of the lamp.
-        assert!(gather.at(DVec3::new(0.4, 1.989, 0.0), DVec3::Y, 7).g < 1e-3);
-    }
-
-    #[test]
-    fn weights_of_corners_are_bilinear_in_a_rectangle() {
-        let corners = quad([0.0; 3], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
-        for (x, y) in [(0.5, 0.25), (0.0, 0.5), (2.0, 1.0)] {
-            let weights = corner_weights(&corners, DVec3::Z, DVec3::new(x, y, 0.0));
-            let sum: f64 = weights.iter().sum();
-            let u = x / 2.0;
-            let expected = [(1.0 - u) * (1.0 - y), u * (1.0 - y), u * y, (1.0 - u) * y];
-            for (weight, expected) in weights.iter().zip(expected) {
-                assert!((weight / sum - expected).abs() < 1e-6, "{weights:?}");
-            }
-        }
-    }
-
-    /// A room of 2 x 2 x 2 with walls of different light.
-    fn lit_room() -> Solution {
-        let walls = [
-            quad([-1.0; 3], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]),
-            quad([1.0, -1.0, -1.0], [0.0, 0.0, 2.0], [0.0, 2.0, 0.0]),
-            quad([-1.0; 3], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0]),
-            quad([-1.0, 1.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]),
-            quad([-1.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
-            quad([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0]),
-        ];
-        let polygons: Vec<_> = walls.iter().map(|c| (&c[..], LinearRgb::WHITE, LinearRgb::BLACK)).collect();
-        let mesh = ElementMesh::of_polygons(&polygons);
-        let incident: Vec<LinearRgb> =
-            [3.0, 0.5, 1.0, 0.2, 0.7, 0.1].map(|v| LinearRgb::new(v, 1.0, 0.5 * v)).to_vec();
-        Solution { mesh, direct: vec![LinearRgb::BLACK; 6], incident, ..Solution::default() }
-    }
-
-    #[test]
-    fn reflected_light_is_carried_along_its_gradient() {
-        let solution = lit_room();
-        let occluders = Occluders::new(&solution.mesh).expect("few");
-        let settings = CacheSettings { rings: 24, reach: 0.3, least: None };
-        let mut gather = ReflectedGather::new(&solution, &occluders, &settings).expect("in range");
-        let exact = |place: DVec3| {
-            let share = |wall: u32| Facet::of(&solution.mesh, wall).share_at(place, DVec3::Y);
-            (0..6).map(|wall| share(wall) * f64::from(solution.incident[wall as usize].r)).sum::<f64>()
-        };
-        let start = DVec3::new(0.2, -1.0, -0.1);
-        gather.prepare(&[(start, DVec3::Y)], &senca_math::Control::default()).expect("not cancelled");
-        assert_eq!(gather.len(), 1);
-        for way in [DVec3::ZERO, 0.1 * DVec3::X, -0.1 * DVec3::X, 0.1 * DVec3::Z, -0.1 * DVec3::Z] {
-            let [carried, exact] = [f64::from(gather.at(start + way, DVec3::Y).r), exact(start + way)];
-            assert!((carried / exact - 1.0).abs() < 0.015, "{way}: {carried} {exact}");
-        }
-        // All walls are equally bright in the second channel.
-        assert!((gather.at(start, DVec3::Y).g - 1.0).abs() < 1e-6);
-        // A normal that turns towards the bright wall sees more of it.
-        let turned = DVec3::new(-0.05, 1.0, 0.0).normalize();
-        assert!(gather.at(start, turned).r > gather.at(start, DVec3::Y).r);
-    }
-
-    #[test]
-    fn found_light_does_not_depend_on_threads() {
-        let solution = lit_room();
-        let occluders = Occluders::new(&solution.mesh).expect("few");
-        let places: Vec<(DVec3, DVec3)> = (0..900)
-            .map(|i| {
-                (DVec3::new(f64::from(i % 30) / 15.0 - 0.97, -1.0, f64::from(i / 30) / 15.0 - 0.97), DVec3::Y)
-            })
-            .collect();
-        let with = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| {
-                let settings = CacheSettings { rings: 4, ..CacheSettings::default() };
-                let mut gather = ReflectedGather::new(&solution, &occluders, &settings).expect("in range");
-                gather.prepare(&places, &senca_math::Control::default()).expect("not cancelled");
-                assert!(gather.len() < places.len());
-                places.iter().map(|&(place, normal)| gather.at(place, normal)).collect::<Vec<_>>()
-            })
-        };
-        assert_eq!(with(1), with(3));
-    }
-
-    #[test]
-    fn places_find_their_leaves() {
-        let mut mesh = scene();
-        mesh.divide_to_size(0.7, 1 << 16).expect("few");
-        for (x, z) in [(-4.9, 3.3), (0.1, 0.2), (4.99, -4.99)] {
-            let place = DVec3::new(x, 0.0, z);
-            let leaf = leaf_at(&mesh, 0, place);
-            assert!(mesh.elements()[leaf as usize].is_leaf());
-            assert!(inside_by(mesh.shape(leaf).corners(), DVec3::Y, place) >= 0.0);
-        }
-    }
 }

@@ -16,13 +16,13 @@
 //! 1995, "A unified hierarchical algorithm for global illumination with scattering volumes and object
 //! clusters".
 
-mod cluster;
+pub(crate) mod cluster;
 mod exchange;
 pub(crate) mod facet;
 mod link;
 mod lost;
 mod moments;
-mod node;
+pub(crate) mod node;
 mod oracle;
 mod refine;
 mod settings;

@@ -20,7 +20,6 @@ mod mesh;
 mod nodes;
 mod occluders;
 mod patch_polygon;
-mod probe;
 mod saved;
 mod solution;
 pub mod system;
@@ -28,16 +27,12 @@ pub mod system;
 pub use bake::{bake_lightmap, bake_vertex_colors};
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
-pub use gather::{
-    CacheSettings, DirectGather, GatherSettings, IndirectField, ReflectedGather, gather_reflected,
-    regather_reflected,
-};
+pub use gather::{Gather, GatherSettings, regather_reflected};
 pub use hierarchy::{HierarchySettings, solve_hierarchy};
 pub use lux::{LuxGrid, LuxReport, MOST_LUX_PLACES};
 pub use mesh::{CornerAttributes, Element, ElementMesh, MeshSettings, NONE, Polygon, RadiantSurface, Sides};
 pub use nodes::{Extrapolation, NodeTransfer, NodeValues};
 pub use occluders::{Occluders, PolygonHit};
 pub use patch_polygon::PatchPolygon;
-pub use probe::{Probe, ProbeSettings};
 pub use saved::{SavedSolutionError, light_fingerprint};
 pub use solution::{Solution, SolveReport};

@@ -1,5 +1,8 @@
 //! A solution as the light on surfaces that rays meet.
 
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
 use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
 use senca_scene::{Material, NodeId, Reflection, Scene};
@@ -7,7 +10,7 @@ use senca_trace::recursive::{KnownLight, SurfaceLight};
 use senca_trace::{Interaction, MaterialPoint, ReflectionPoint, World};
 
 use super::{ElementFinder, LightField, Place};
-use crate::Probe;
+use crate::Gather;
 use crate::false_color::FalseColors;
 
 /// Share of the light that a dielectric sends back at its surface, which a matt base does not see.
@@ -48,7 +51,7 @@ pub struct ShownLight<'a> {
     elsewhere: LinearRgb,
     look: Look,
     lines: Option<MeshLines>,
-    probe: Option<&'a Probe<'a>>,
+    gather: Option<&'a Gather<'a>>,
 }
 
 impl<'a> ShownLight<'a> {
@@ -70,7 +73,7 @@ impl<'a> ShownLight<'a> {
             elsewhere: scene.ambient,
             look,
             lines: None,
-            probe: None,
+            gather: None,
         }
     }
 
@@ -83,18 +86,15 @@ impl<'a> ShownLight<'a> {
 
     /// The same with light gathered once more at each place that is met (final gathering).
     #[must_use]
-    pub fn gathered_by(mut self, probe: &'a Probe<'a>) -> Self {
-        self.probe = Some(probe);
+    pub fn gathered_by(mut self, gather: &'a Gather<'a>) -> Self {
+        self.gather = Some(gather);
         self
     }
 
     /// Light that arrives at a place.
     fn arriving(&self, at: &Interaction, place: &Place) -> LinearRgb {
-        match self.probe {
-            Some(probe) => {
-                let normal = if at.entering { at.shading_normal } else { -at.shading_normal };
-                probe.at(place.point, normal, turn_at(at.point))
-            }
+        match self.gather {
+            Some(gather) => gather.at(place.point, facing(at), key_of(at.point)),
             None => self.field.at(place.element, place.point),
         }
     }
@@ -122,14 +122,19 @@ impl<'a> ShownLight<'a> {
     }
 }
 
-/// A number in [0, 1) that differs from place to place as chance would have it.
-fn turn_at(place: DVec3) -> f64 {
+/// The normal on the side that is seen.
+fn facing(at: &Interaction) -> DVec3 {
+    if at.entering { at.shading_normal } else { -at.shading_normal }
+}
+
+/// A number that differs from place to place as chance would have it.
+fn key_of(place: DVec3) -> u64 {
     let mut hash = 0_u64;
     for bits in place.to_array().map(f64::to_bits) {
         hash = (hash ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         hash ^= hash >> 29;
     }
-    (hash >> 11) as f64 / (1_u64 << 53) as f64
+    hash
 }
 
 /// Number of the instance at each node.
@@ -179,5 +184,43 @@ impl SurfaceLight for ShownLight<'_> {
             _ => (0.0, LinearRgb::BLACK),
         };
         KnownLight::Leaving(shown.lerp(share.1, share.0))
+    }
+}
+
+/// Writes down the places that are seen, so that light can be gathered for them together.
+pub struct SeenPlaces<'a> {
+    light: &'a ShownLight<'a>,
+    places: Mutex<Vec<[u64; 6]>>,
+}
+
+impl<'a> SeenPlaces<'a> {
+    /// Of what `light` is to show.
+    #[must_use]
+    pub fn new(light: &'a ShownLight<'a>) -> Self {
+        Self { light, places: Mutex::default() }
+    }
+
+    /// Places and unit normals, in an order that does not depend on when they were seen.
+    #[must_use]
+    pub fn into_places(self) -> Vec<(DVec3, DVec3)> {
+        let mut places = self.places.into_inner().unwrap_or_else(PoisonError::into_inner);
+        places.par_sort_unstable();
+        places.dedup();
+        let read = |bits: [u64; 6]| {
+            let [x, y, z, u, v, w] = bits.map(f64::from_bits);
+            (DVec3::new(x, y, z), DVec3::new(u, v, w))
+        };
+        places.into_iter().map(read).collect()
+    }
+}
+
+impl SurfaceLight for SeenPlaces<'_> {
+    fn at(&self, at: &Interaction, _: &MaterialPoint) -> KnownLight {
+        if let Some(place) = self.light.place(at) {
+            let ([x, y, z], [u, v, w]) = (place.point.to_array(), facing(at).to_array());
+            let mut places = self.places.lock().unwrap_or_else(PoisonError::into_inner);
+            places.push([x, y, z, u, v, w].map(f64::to_bits));
+        }
+        KnownLight::Leaving(LinearRgb::BLACK)
     }
 }

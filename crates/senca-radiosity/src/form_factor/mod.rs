@@ -31,7 +31,7 @@
 //! ```
 
 mod cells;
-mod clip;
+pub(crate) mod clip;
 pub mod closed_form;
 mod cost;
 mod dilogarithm;

@@ -13,31 +13,13 @@ use rayon::prelude::*;
 use senca_math::glam::DVec3;
 use senca_math::{Cancelled, Control, LinearRgb};
 
-use super::{Frame, leaf_at, mix, unit_hash};
-use crate::{Occluders, RadiosityError, Solution};
-
-/// How reflected light is found and carried.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CacheSettings {
-    /// Rays per place are three times the square of this, 2 to 64. Default 12.
-    pub rings: u32,
-    /// How far light is carried, as a share of the distance of what is around, in (0, 1]. Default 0.15.
-    /// Half of it makes about four times the places.
-    pub reach: f64,
-    /// Light is carried at least so far, in world units, > 0; about what two pixels show is right.
-    /// Default `None`: 1/1000 of the diagonal of the scene.
-    pub least: Option<f64>,
-}
-
-impl Default for CacheSettings {
-    fn default() -> Self {
-        Self { rings: 12, reach: 0.15, least: None }
-    }
-}
+use super::visible::Blockers;
+use super::{Frame, GatherSettings, mix, reflected_along, unit_hash};
+use crate::{Occluders, Solution};
 
 /// Reflected light at any place, from places where it was found.
 #[derive(Clone, Debug)]
-pub struct ReflectedGather<'a> {
+pub(super) struct ReflectedGather<'a> {
     solution: &'a Solution,
     occluders: &'a Occluders,
     rings: u32,
@@ -80,28 +62,11 @@ const NEAREST: f64 = 2.5;
 const BATCH: usize = 64;
 
 impl<'a> ReflectedGather<'a> {
-    /// Nothing found yet.
-    ///
-    /// # Errors
-    /// [`RadiosityError::Setting`].
-    pub fn new(
-        solution: &'a Solution,
-        occluders: &'a Occluders,
-        settings: &CacheSettings,
-    ) -> Result<Self, RadiosityError> {
-        let refuse = |name, value, expected| Err(RadiosityError::Setting { name, value, expected });
-        if !(2..=64).contains(&settings.rings) {
-            return refuse("rings of rays", settings.rings.into(), "from 2 to 64");
-        }
-        if !(settings.reach > 0.0 && settings.reach <= 1.0) {
-            return refuse("reach of found light", settings.reach, "above 0 and at most 1");
-        }
+    /// Nothing found yet. Settings have to be in range.
+    pub(super) fn new(solution: &'a Solution, occluders: &'a Occluders, settings: &GatherSettings) -> Self {
         let size = solution.mesh.bounds().diagonal();
         let least = settings.least.unwrap_or(size / 1000.0);
-        if !(least > 0.0 && least.is_finite()) && size > 0.0 {
-            return refuse("least reach of found light", least, "above 0 and finite");
-        }
-        Ok(Self {
+        Self {
             solution,
             occluders,
             rings: settings.rings,
@@ -110,7 +75,7 @@ impl<'a> ReflectedGather<'a> {
             records: Vec::new(),
             cells: HashMap::new(),
             levels: Vec::new(),
-        })
+        }
     }
 
     /// Finds light so that it can be carried to each of `places`, which come with their unit normals.
@@ -118,7 +83,12 @@ impl<'a> ReflectedGather<'a> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn prepare(&mut self, places: &[(DVec3, DVec3)], control: &Control<'_>) -> Result<(), Cancelled> {
+    pub(super) fn prepare(
+        &mut self,
+        places: &[(DVec3, DVec3)],
+        blockers: &Blockers<'_>,
+        control: &Control<'_>,
+    ) -> Result<(), Cancelled> {
         // Far apart from each other first.
         let bits = places.len().next_power_of_two().trailing_zeros();
         let turned =
@@ -133,7 +103,10 @@ impl<'a> ReflectedGather<'a> {
                 .par_iter()
                 .map(|&i| {
                     let (place, normal) = places[i];
-                    if self.carried(place, normal).is_some() { None } else { Some(self.find(place, normal)) }
+                    if self.carried(place, normal).is_some() {
+                        return None;
+                    }
+                    Some(self.find(place, normal, blockers.nearest_above(place, normal)))
                 })
                 .collect();
             for record in found.into_iter().flatten() {
@@ -148,22 +121,15 @@ impl<'a> ReflectedGather<'a> {
 
     /// Light that surfaces reflect to a place on a surface with this unit normal: what a white matt
     /// surface would show of it. Found anew where none can be carried there.
-    #[must_use]
-    pub fn at(&self, place: DVec3, normal: DVec3) -> LinearRgb {
-        let light = self.carried(place, normal).unwrap_or_else(|| self.find(place, normal).light);
+    pub(super) fn at(&self, place: DVec3, normal: DVec3) -> LinearRgb {
+        let light =
+            self.carried(place, normal).unwrap_or_else(|| self.find(place, normal, f64::INFINITY).light);
         LinearRgb::new(light.x as f32, light.y as f32, light.z as f32)
     }
 
     /// Number of places where light was found.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.records.len()
-    }
-
-    /// Whether no light was found yet.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.records.is_empty()
     }
 
     /// The mean of what records have to say about a place, by their nearness.
@@ -202,8 +168,9 @@ impl<'a> ReflectedGather<'a> {
         }
     }
 
-    /// Light at a place by rays: rings of equal weight, each of equal parts.
-    fn find(&self, place: DVec3, normal: DVec3) -> Record {
+    /// Light at a place by rays: rings of equal weight, each of equal parts. `nearest` is how far away
+    /// the nearest surface is, which rays may miss.
+    fn find(&self, place: DVec3, normal: DVec3, nearest: f64) -> Record {
         let frame = Frame::of(normal);
         let (rings, parts) = (self.rings as usize, 3 * self.rings as usize);
         let key = place.to_array().iter().fold(0, |key, v| mix(key ^ v.to_bits()));
@@ -217,10 +184,13 @@ impl<'a> ReflectedGather<'a> {
         let count = samples.len() as f64;
         let light = samples.iter().map(|s| s.light).sum::<DVec3>() / count;
         let nearness = samples.iter().map(|s| s.nearness).sum::<f64>() / count;
-        let by_place = gradient(&samples, rings, &frame);
-        let nearest = samples.iter().map(|s| s.nearness).fold(0.0, f64::max).recip();
+        let seen = samples.iter().map(|s| s.nearness).fold(0.0, f64::max).recip();
         // Towards a corner light grows faster than along a straight line.
-        let mut radius = nearness.recip().min(NEAREST * nearest);
+        let near = nearness.recip().min(NEAREST * nearest.min(seen));
+        // What is so near that light is carried across it says nothing about a slope.
+        let trust = (near / self.radii[0]).min(1.0);
+        let by_place = gradient(&samples, rings, &frame).map(|slope| slope * trust);
+        let mut radius = near;
         for (value, slope) in light.to_array().iter().zip(&by_place) {
             // Where light changes fast it is not carried far.
             radius = radius.min(value / slope.length());
@@ -237,18 +207,11 @@ impl<'a> ReflectedGather<'a> {
     }
 
     fn look(&self, place: DVec3, direction: DVec3) -> Sample {
-        let Some(hit) = self.occluders.closest(place, direction) else {
+        let Some(met) = reflected_along(self.solution, self.occluders, place, direction) else {
             return Sample::default();
         };
-        let nearness = 1.0 / hit.t.max(1e-6 * self.radii[0]);
-        if !hit.front {
-            return Sample { light: DVec3::ZERO, nearness };
-        }
-        let mesh = &self.solution.mesh;
-        let leaf = leaf_at(mesh, hit.polygon, place + hit.t * direction);
-        let light = mesh.surface(leaf).reflectance * self.solution.incident[leaf as usize];
-        let [r, g, b] = light.to_array().map(f64::from);
-        Sample { light: DVec3::new(r, g, b), nearness }
+        let [r, g, b] = met.light.to_array().map(f64::from);
+        Sample { light: DVec3::new(r, g, b), nearness: 1.0 / met.distance.max(1e-6 * self.radii[0]) }
     }
 }
 

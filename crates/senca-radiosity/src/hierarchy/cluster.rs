@@ -28,8 +28,8 @@ const DEPTH: usize = 48;
 
 /// A group of polygons.
 #[derive(Clone, Debug)]
-pub(super) struct Cluster {
-    pub(super) bounds: Aabb,
+pub(crate) struct Cluster {
+    pub(crate) bounds: Aabb,
     /// Half of the diagonal of the box.
     pub(super) radius: f64,
     /// Sum over the polygons, in square world units.
@@ -44,7 +44,7 @@ pub(super) struct Cluster {
 
 /// All clusters; the first holds everything, and each comes before those it holds.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Clusters {
+pub(crate) struct Clusters {
     clusters: Vec<Cluster>,
     children: Vec<Node>,
     /// Numbers of polygons.
@@ -64,7 +64,7 @@ struct Task {
 
 impl Clusters {
     /// Clusters of all polygons of `mesh`.
-    pub(super) fn new(mesh: &ElementMesh) -> Self {
+    pub(crate) fn new(mesh: &ElementMesh) -> Self {
         let count = mesh.polygons().len();
         let boxes: Vec<Aabb> = (0..count as u32)
             .map(|polygon| Aabb::of_points(mesh.shape(polygon).corners().iter().copied()))
@@ -78,15 +78,15 @@ impl Clusters {
         built
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.clusters.len()
     }
 
-    pub(super) fn get(&self, cluster: u32) -> &Cluster {
+    pub(crate) fn get(&self, cluster: u32) -> &Cluster {
         &self.clusters[cluster as usize]
     }
 
-    pub(super) fn children(&self, cluster: u32) -> &[Node] {
+    pub(crate) fn children(&self, cluster: u32) -> &[Node] {
         let range = &self.clusters[cluster as usize].children;
         &self.children[range.start as usize..range.end as usize]
     }

@@ -93,7 +93,7 @@ impl Facet {
         if self.normal.dot(way) >= 0.0 {
             return 0.0;
         }
-        lambert(point, normal, &self.shape)
+        lambert_share(point, normal, self.shape.corners())
     }
 
     /// Mean over this of the share that `source` takes up, with how much it varies.
@@ -112,8 +112,8 @@ impl Facet {
 
 /// Lambert's formula of 1760: the angles under which the edges are seen, times the cosines between the
 /// planes through them and the horizon. The part below the horizon does not count.
-fn lambert(point: DVec3, normal: DVec3, shape: &PatchPolygon) -> f64 {
-    let ways: SmallVec<[DVec3; 6]> = shape.corners().iter().map(|&corner| corner - point).collect();
+pub(crate) fn lambert_share(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
+    let ways: SmallVec<[DVec3; 6]> = corners.iter().map(|&corner| corner - point).collect();
     let heights: SmallVec<[f64; 6]> = ways.iter().map(|way| way.dot(normal)).collect();
     if heights.iter().all(|&height| height >= 0.0) {
         return sum_over_edges(&ways, normal);
@@ -169,7 +169,7 @@ mod tests {
     fn far_away_both_formulas_agree() {
         let above = square(1.0);
         for point in [DVec3::new(0.0, 0.0, -6.1), DVec3::new(5.0, 1.0, -5.0)] {
-            let exact = lambert(point, DVec3::Z, &above.shape);
+            let exact = lambert_share(point, DVec3::Z, above.shape.corners());
             let squared = (above.center - point).length_squared();
             let cosine = (above.center - point).z;
             let small = cosine * cosine / (PI * squared * squared);
@@ -183,7 +183,7 @@ mod tests {
         let far = 1e6;
         let corners = [[-far, -far], [far, -far], [far, far], [-far, far]];
         let wall = PatchPolygon::quad(corners.map(|[y, z]| DVec3::new(-1.0, y, z)));
-        assert!((lambert(DVec3::ZERO, DVec3::Z, &wall) - 0.5).abs() < 1e-5);
+        assert!((lambert_share(DVec3::ZERO, DVec3::Z, wall.corners()) - 0.5).abs() < 1e-5);
     }
 
     #[test]

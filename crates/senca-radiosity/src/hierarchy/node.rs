@@ -2,7 +2,7 @@
 
 /// A cluster, an element, or a rectangular lamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Node(u32);
+pub(crate) struct Node(u32);
 
 const CLUSTER: u32 = 1 << 31;
 const LAMP: u32 = 1 << 30;
@@ -25,12 +25,12 @@ impl Node {
 
     /// Number among its kind.
     #[inline]
-    pub(super) const fn index(self) -> usize {
+    pub(crate) const fn index(self) -> usize {
         (self.0 & (LAMP - 1)) as usize
     }
 
     #[inline]
-    pub(super) const fn as_cluster(self) -> Option<u32> {
+    pub(crate) const fn as_cluster(self) -> Option<u32> {
         if self.0 & CLUSTER != 0 { Some(self.index() as u32) } else { None }
     }
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use senca_math::Control;
 use senca_radiosity::display::{ElementFinder, Interpolation, LightField};
 use senca_radiosity::{
-    DirectLight, LuxGrid, LuxReport, Occluders, Probe, ProbeSettings, RadiosityError, Solution,
+    DirectLight, Gather, GatherSettings, LuxGrid, LuxReport, Occluders, RadiosityError, Solution,
     bake_lightmap, bake_vertex_colors,
 };
 use senca_scene::Scene;
@@ -40,6 +40,9 @@ pub fn bake_light(
     })?
 }
 
+/// Rays for reflected light at each place that is measured.
+const LUX_RAYS: u32 = 512;
+
 /// Illuminance on a grid in the light of `solution`; a shown 1 stands for `luminance_of_one` cd/m².
 ///
 /// # Errors
@@ -54,12 +57,10 @@ pub fn measure_lux(
 ) -> Result<LuxReport, Error> {
     let prepared = prepare(Cow::Borrowed(scene), settings)?;
     on_threads(settings.drawing.threads, || {
-        let field = LightField::new(&solution.mesh, solution.incident.clone(), Interpolation::Smooth);
-        let finder = finder_of(solution)?;
         let occluders = Occluders::new(&solution.mesh)?;
         let direct = DirectLight::of_scene(&prepared.scene, &settings.radiosity.direct)?;
-        let probe = Probe::new(&field, &finder, &occluders, &direct, &ProbeSettings::default());
-        let light = |place, normal| probe.at(place, normal, 0.0);
+        let gather = Gather::new(solution, &direct, &occluders, &GatherSettings::default())?;
+        let light = |place, normal| gather.afresh(place, normal, LUX_RAYS, 0);
         let report = LuxReport::measure(grid, luminance_of_one, control, light);
         Ok(report.map_err(RadiosityError::from)?)
     })?

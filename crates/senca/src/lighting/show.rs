@@ -7,12 +7,15 @@ use senca_math::glam::DVec3;
 use senca_math::{Control, Image, LinearRgb, View, ViewKind};
 use senca_pipeline::{Culling, Shading};
 use senca_radiosity::display::{
-    Interpolation, LightField, Look, MeshLines, ShownColors, ShownLight, shown_scene,
+    Interpolation, LightField, Look, MeshLines, SeenPlaces, ShownColors, ShownLight, shown_scene,
 };
 use senca_radiosity::false_color::{FalseColors, with_scale};
-use senca_radiosity::{DirectLight, Occluders, Probe, ProbeSettings, Solution};
+use senca_radiosity::{
+    DirectLight, Gather, GatherSettings, Occluders, RadiosityError, Solution, regather_reflected,
+};
 use senca_scene::{Background, Scene};
-use senca_trace::recursive::{RecursiveSettings, Tracer};
+use senca_trace::antialias::Antialiasing;
+use senca_trace::recursive::{RecursiveSettings, SurfaceLight, Tracer};
 use senca_trace::{Film, FilmReport, FilmSettings, PrimaryRays, Watch, World};
 
 use super::measure::finder_of;
@@ -58,8 +61,8 @@ pub fn show_light(
     Ok((image, report))
 }
 
-/// Directions in which light is gathered for each sample; the next sample has others.
-const GATHERING: ProbeSettings = ProbeSettings { directions: 128, sights: 4 };
+/// Rays by which each element looks at reflected light once more before it is gathered from there.
+const REGATHERING: u32 = 16;
 
 /// All that a picture is made of.
 struct Shot<'a> {
@@ -118,24 +121,48 @@ impl Shot<'_> {
             None => Look::Matt,
         };
         let occluders;
-        let direct;
-        let probe;
+        let regathered;
+        let gather;
         let mut light = ShownLight::new(&world, &field, &finder, look);
         if self.display() == Display::Gather && colors.is_none() {
             occluders = Occluders::new(&solution.mesh)?;
-            direct = DirectLight::of_scene(scene, &self.settings.radiosity.direct)?;
-            probe = Probe::new(&field, &finder, &occluders, &direct, &GATHERING);
-            light = light.gathered_by(&probe);
+            regathered = self.regathered(&occluders)?;
+            gather = self.gather(&world, &light, &regathered, &occluders)?;
+            light = light.gathered_by(&gather);
         }
         if let Show::Mesh | Show::FalseColors { mesh: true, .. } = self.settings.radiosity.show {
             light = light.with_lines(lines(&self.prepared.view, self.prepared.size));
         }
-        let (image, film) = self.expose(&world, &light, traced)?;
+        let (image, film) = self.expose(&world, &light, self.settings.tracing.antialiasing, traced)?;
         report.tracing = Some(film);
         Ok(match colors {
             Some(colors) => with_scale(&image, &colors, "lux"),
             None => image,
         })
+    }
+
+    /// The solution with light on elements as fine as they are.
+    fn regathered(&self, occluders: &Occluders) -> Result<Solution, Error> {
+        let mut solution = self.solution.clone();
+        let done = regather_reflected(&mut solution, occluders, REGATHERING, self.control);
+        done.map_err(RadiosityError::from)?;
+        Ok(solution)
+    }
+
+    /// Light at all places that are seen.
+    fn gather<'g>(
+        &self,
+        world: &World<'_>,
+        light: &ShownLight<'_>,
+        solution: &'g Solution,
+        occluders: &'g Occluders,
+    ) -> Result<Gather<'g>, Error> {
+        let direct = DirectLight::of_scene(&self.prepared.scene, &self.settings.radiosity.direct)?;
+        let mut gather = Gather::new(solution, &direct, occluders, &GatherSettings::default())?;
+        let seen = SeenPlaces::new(light);
+        self.expose(world, &seen, Antialiasing::None, false)?;
+        gather.prepare(&seen.into_places(), self.control).map_err(RadiosityError::from)?;
+        Ok(gather)
     }
 
     /// Light but for that of lamps, which the tracer finds by itself.
@@ -152,7 +179,8 @@ impl Shot<'_> {
     fn expose(
         &self,
         world: &World<'_>,
-        light: &ShownLight<'_>,
+        light: &dyn SurfaceLight,
+        antialiasing: Antialiasing,
         traced: bool,
     ) -> Result<(Image, FilmReport), Error> {
         let (settings, prepared) = (self.settings, self.prepared);
@@ -168,7 +196,7 @@ impl Shot<'_> {
         let film_settings = FilmSettings {
             size: prepared.size,
             area: area(prepared.size, settings)?,
-            antialiasing: settings.tracing.antialiasing,
+            antialiasing,
             seed: recursive.seed,
         };
         let mut film = Film::new(&film_settings)?;
