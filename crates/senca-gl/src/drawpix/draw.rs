@@ -203,8 +203,9 @@ impl Context {
         let separate =
             s.enabled.has(Cap::Lighting) && s.lighting.color_control == gl::SEPARATE_SPECULAR_COLOR;
         let sums = s.enabled.has(Cap::ColorSum) || separate;
-        !CAPS.iter().any(|cap| s.enabled.has(*cap))
-            && !(sums && s.current.raster.secondary[..3] != [0.0; 3])
+        let adds = sums && s.current.raster.secondary[..3] != [0.0; 3];
+        !adds
+            && CAPS.iter().all(|cap| !s.enabled.has(*cap))
             && s.color.mask == [true; 4]
             && self.framebuffers.draw_samples() == 0
             && (0..TEXTURE_UNITS).all(|unit| self.texture_view(unit).is_none())
@@ -232,11 +233,11 @@ impl Context {
         let area = self.draw_area();
         self.make_plan();
         let layout = self.immediate.plan.layout;
-        let mut next = self.begin_pixel_batch(layout, [area.x1, area.y1]);
+        let first = self.begin_pixel_batch(layout, [area.x1, area.y1]);
         let raster = self.state.current.raster;
         let window = [area.x1, area.y1].map(|side| f64::from(side) / 2.0);
         let varyings = usize::from(layout.stride);
-        for i in (0..count).filter(|i| keep(*i)) {
+        for (next, i) in (first..).zip((0..count).filter(|i| keep(*i))) {
             // The rasterizer's clip space has y down.
             let clip_x = (f64::from(x) + i as f64 + 0.5) / window[0] - 1.0;
             let clip_y = 1.0 - (f64::from(y) + 0.5) / window[1];
@@ -259,7 +260,6 @@ impl Context {
                 }
             }
             batch.indices.push(next);
-            next += 1;
         }
     }
 

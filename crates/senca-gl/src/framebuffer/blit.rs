@@ -88,6 +88,24 @@ pub(crate) fn blit(
     if copies_runs(source, destination, rects, aspect) {
         return copy_rows(source, destination, &nearest, area);
     }
+    if let (Aspect::Color, Texels::Rgba8(from), 2, 1) =
+        (aspect, &*source.texels, source.side(), destination.side())
+    {
+        return resolve8(source, from, destination, &nearest, area);
+    }
+    blit_plain(source, destination, rects, area, aspect, linear);
+}
+
+/// The blit pixel by pixel, for all kinds of planes and rectangles; `area` lies within the destination.
+fn blit_plain(
+    source: &Plane,
+    destination: &mut Plane,
+    rects: &BlitRects,
+    area: Area,
+    aspect: Aspect,
+    linear: bool,
+) {
+    let nearest = Nearest::new(source, rects, area);
     match aspect {
         Aspect::Color if linear && source.samples == 0 => {
             let axes = rects.axes();
@@ -218,9 +236,6 @@ fn blit_samples(source: &Plane, destination: &mut Plane, nearest: &Nearest, area
         }
         return;
     }
-    if let (Texels::Rgba8(from), 2, 1) = (&*source.texels, side, destination.side()) {
-        return resolve8(source, from, destination, nearest, area);
-    }
     each_pixel(destination, area, |x, y| {
         let (from_x, from_y) = nearest.at(x, y, area)?;
         let mut sum = [0.0; 4];
@@ -277,6 +292,65 @@ fn blit_values<T: Copy>(
                     to[at] = from[source.at(a, b)];
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::gl;
+    use crate::texture::InternalFormat;
+
+    fn plane(token: u32, samples: u32, seed: u32) -> Plane {
+        let format = InternalFormat::for_renderbuffer(token).expect("a format");
+        let mut plane = Plane::new(format, 7, 5, samples).expect("small");
+        let mut state = seed | 1;
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            state.to_le_bytes()
+        };
+        match plane.texels_mut() {
+            Texels::Rgba8(colors) => colors.iter_mut().for_each(|color| *color = next()),
+            texels => {
+                let depths = texels.depths_mut().into_iter().flatten();
+                depths.for_each(|depth| *depth = f32::from(next()[0]) / 255.0);
+            }
+        }
+        plane
+    }
+
+    proptest! {
+        /// Copies of runs and fast resolves give what the blit pixel by pixel gives.
+        #[test]
+        fn fast_blits_equal_plain_ones(
+            corner in prop::array::uniform4(-4_i32..10),
+            size in prop::array::uniform2(-8_i32..9),
+            kind in 0..3,
+            seed: u32,
+        ) {
+            let [a, b, c, d] = corner;
+            let [w, h] = size;
+            let rects = BlitRects { source: [a, b, a + w, b + h], destination: [c, d, c + w, d + h] };
+            let (token, samples, aspect) = match kind {
+                0 => (gl::RGBA8, 0, Aspect::Color),
+                1 => (gl::RGBA8, 4, Aspect::Color),
+                _ => (gl::DEPTH_COMPONENT24, 0, Aspect::Depth),
+            };
+            let source = plane(token, samples, seed);
+            let mut fast = plane(token, 0, !seed);
+            let mut plain = fast.clone();
+            let clip = Area { x0: 1, y0: 0, x1: 6, y1: 5 };
+            blit(&source, &mut fast, &rects, clip, aspect, false);
+            let area = rects.destination_area().intersect(clip).intersect(plain.area());
+            if !area.is_empty() {
+                blit_plain(&source, &mut plain, &rects, area, aspect, false);
+            }
+            prop_assert_eq!(fast.texels, plain.texels);
         }
     }
 }

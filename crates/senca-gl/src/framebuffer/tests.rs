@@ -396,7 +396,9 @@ fn samples_are_resolved_to_their_mean() {
         if let crate::texture::Texels::Rgba8(colors) = planes.color(0).texels_mut() {
             colors.iter_mut().enumerate().for_each(|(i, color)| *color = [i as u8 * 4, 0, 0, 255]);
         }
-        planes.depth().and_then(|plane| plane.texels_mut().depths_mut()).map(|d| d.fill(0.5));
+        if let Some(depths) = planes.depth().and_then(|plane| plane.texels_mut().depths_mut()) {
+            depths.fill(0.5);
+        }
         c.framebuffers.put_back(planes);
     };
     fill(&mut c);
