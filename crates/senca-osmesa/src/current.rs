@@ -186,13 +186,13 @@ fn put_back(current: Box<Current>) {
 /// Gives the thread a context, with its window made ready by `prepare`; `false` when there is no such context,
 /// another thread has it, or `prepare` says so. Then everything is as before.
 pub(crate) fn make_current(handle: usize, prepare: impl FnOnce(&mut Current) -> bool) -> bool {
-    if handle == 0 || current_handle() == handle {
+    if handle != 0 && current_handle() == handle {
         let mut done = false;
         with(|c| {
             c.present();
             done = prepare(c);
         });
-        return done && handle != 0;
+        return done;
     }
     let Some(mut next) = take(handle) else { return false };
     let ready = catch_unwind(AssertUnwindSafe(|| prepare(&mut next))).unwrap_or(false);

@@ -2,18 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Versions and extensions of which everything must be there.
-const SECTIONS: [&str; 9] = [
-    "GL_VERSION_1_2",
-    "GL_VERSION_1_3",
-    "GL_VERSION_1_4",
-    "GL_VERSION_1_5",
-    "GL_ARB_framebuffer_object",
-    "GL_ARB_clip_control",
-    "GL_KHR_debug",
-    "GL_EXT_framebuffer_object",
-    "GL_EXT_framebuffer_blit",
-];
+/// Versions of which everything must be there, as of all extensions that are told.
+const SECTIONS: [&str; 4] = ["GL_VERSION_1_2", "GL_VERSION_1_3", "GL_VERSION_1_4", "GL_VERSION_1_5"];
 
 /// A header of the system; `None` where there are no headers.
 fn header(name: &str) -> Option<String> {
@@ -68,10 +58,10 @@ fn rust_type(c: &str) -> String {
 
 /// A signature of the tables, pointers told by their direction only.
 fn plain(signature: &str) -> String {
-    let direction = |t: &str| match t {
-        _ if t.starts_with("In<") || t == "Pointer" || t.starts_with("*const") => "In".to_owned(),
-        _ if t.starts_with("Out<") || t.starts_with("*mut") => "Out".to_owned(),
-        _ => t.replace(' ', ""),
+    let direction = |t: &str| match t.replace(' ', "") {
+        t if t.starts_with("In<") || t == "Pointer" || t.starts_with("*const") => "In".to_owned(),
+        t if t.starts_with("Out<") || t.starts_with("*mut") => "Out".to_owned(),
+        t => t,
     };
     let (parameters, result) = signature.split_once("->").unwrap();
     let types: String = parameters.split_terminator(';').map(|t| direction(t.trim()) + ";").collect();
@@ -81,12 +71,12 @@ fn plain(signature: &str) -> String {
 /// Prototypes of what must be there; `None` without headers.
 fn wanted() -> Option<BTreeMap<String, String>> {
     let (gl, ext) = (header("gl.h")?, header("glext.h")?);
-    let imaging = gl.split("GL_ARB_imaging").next().unwrap_or_default();
+    let imaging = gl.split("\n * GL_ARB_imaging\n").next().unwrap_or_default();
     let mut wanted = prototypes(imaging);
-    for section in SECTIONS {
-        let begin = ext.find(&format!("#ifndef {section}\n")).unwrap_or(0);
-        let end = ext.find(&format!("#endif /* {section} */")).unwrap_or(0);
-        wanted.extend(prototypes(&ext[begin..end]));
+    for section in SECTIONS.iter().chain(senca_gl::EXTENSIONS) {
+        let begin = ext.find(&format!("#ifndef {section}\n"));
+        let end = ext.find(&format!("#endif /* {section} */"));
+        wanted.extend(begin.zip(end).map(|(begin, end)| prototypes(&ext[begin..end])).unwrap_or_default());
     }
     Some(wanted)
 }

@@ -87,3 +87,34 @@ fn only_commands_are_exported() {
     assert!(others.is_empty(), "{others:?}");
     assert!(output("readelf", &["-d"]).contains("soname: [libOSMesa.so.8]"));
 }
+
+/// Commands of the `sh` blocks of `docs/opengl.md`, in their order.
+fn commands_of_the_document() -> Vec<String> {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(repository.join("docs/opengl.md")).unwrap();
+    let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
+    blocks.flat_map(str::lines).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_commands_of_the_document_work() {
+    if !has_compiler() {
+        return;
+    }
+    let library = library();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("document");
+    std::fs::create_dir_all(&folder).unwrap();
+    let commands = commands_of_the_document();
+    assert_eq!(commands[0], "cargo build --release -p senca-osmesa");
+    for command in &commands[1..] {
+        let here = command
+            .replace("target/release", &library.display().to_string())
+            .replace("crates/senca-osmesa", env!("CARGO_MANIFEST_DIR"));
+        let done = Command::new("sh").args(["-c", &here]).current_dir(&folder).status().unwrap();
+        assert!(done.success(), "{command}: {done}");
+    }
+    let picture = std::fs::read(folder.join("picture.ppm")).unwrap();
+    assert_eq!(picture.len(), "P6 320 240 255\n".len() + 320 * 240 * 3);
+    let middle = picture.len() - (120 * 320 + 160) * 3;
+    assert!(picture[middle] > 60, "the cube is lit");
+}

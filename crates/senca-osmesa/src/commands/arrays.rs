@@ -52,6 +52,24 @@ commands! { COMMANDS, c:
     glTexCoordPointer(size: i32, kind: u32, stride: i32, pointer: Pointer) {
         c.gl.tex_coord_pointer(size, kind, stride, vertices(&c.gl, pointer))
     }
+    glVertexPointerEXT(size: i32, kind: u32, stride: i32, _count: i32, pointer: Pointer) {
+        c.gl.vertex_pointer(size, kind, stride, vertices(&c.gl, pointer))
+    }
+    glNormalPointerEXT(kind: u32, stride: i32, _count: i32, pointer: Pointer) {
+        c.gl.normal_pointer(kind, stride, vertices(&c.gl, pointer))
+    }
+    glColorPointerEXT(size: i32, kind: u32, stride: i32, _count: i32, pointer: Pointer) {
+        c.gl.color_pointer(size, kind, stride, vertices(&c.gl, pointer))
+    }
+    glIndexPointerEXT(kind: u32, stride: i32, _count: i32, pointer: Pointer) {
+        c.gl.index_pointer(kind, stride, vertices(&c.gl, pointer))
+    }
+    glEdgeFlagPointerEXT(stride: i32, _count: i32, pointer: In<u8>) {
+        c.gl.edge_flag_pointer(stride, vertices(&c.gl, Pointer::at(pointer.address())))
+    }
+    glTexCoordPointerEXT(size: i32, kind: u32, stride: i32, _count: i32, pointer: Pointer) {
+        c.gl.tex_coord_pointer(size, kind, stride, vertices(&c.gl, pointer))
+    }
     glInterleavedArrays(format: u32, stride: i32, pointer: Pointer) {
         c.gl.interleaved_arrays(format, stride, &vertices(&c.gl, pointer))
     }

@@ -3,6 +3,7 @@
 mod arrays;
 mod debug;
 mod evaluators;
+mod framebuffers;
 mod get;
 mod lists;
 mod matrix;
@@ -10,6 +11,7 @@ mod parameters;
 mod pixels;
 mod select;
 mod state;
+mod textures;
 mod vertex;
 
 use crate::current::Current;
@@ -26,6 +28,7 @@ pub(crate) fn tables() -> impl Iterator<Item = &'static Entry> {
         arrays::COMMANDS,
         debug::COMMANDS,
         evaluators::COMMANDS,
+        framebuffers::COMMANDS,
         get::COMMANDS,
         lists::COMMANDS,
         matrix::COMMANDS,
@@ -33,6 +36,7 @@ pub(crate) fn tables() -> impl Iterator<Item = &'static Entry> {
         pixels::COMMANDS,
         select::COMMANDS,
         state::COMMANDS,
+        textures::COMMANDS,
         vertex::COMPONENTS,
         vertex::SINGLE,
     ]

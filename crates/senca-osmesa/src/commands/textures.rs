@@ -15,7 +15,9 @@ fn values<T: Component + Plain>(name: u32, v: In<T>) -> Few<f64> {
 /// A colour fills the range of the integers.
 fn integers(name: u32, v: &[f64]) -> Few<i32> {
     let number = |v: f64| match name {
-        gl::TEXTURE_BORDER_COLOR | gl::TEXTURE_PRIORITY => ((v * f64::from(u32::MAX) - 1.0) / 2.0).round_ties_even(),
+        gl::TEXTURE_BORDER_COLOR | gl::TEXTURE_PRIORITY => {
+            ((v * f64::from(u32::MAX) - 1.0) / 2.0).round_ties_even()
+        }
         _ => v.round(),
     };
     v.iter().map(|v| number(*v) as i32).collect()
@@ -47,7 +49,7 @@ fn resident(c: &mut Context, n: i32, names: In<u32>) -> u8 {
 fn get_image(c: &mut Context, target: u32, level: i32, format: u32, kind: u32, out: Pointer) {
     let size = c.tex_level_size(target, level).map(|n| n as i32);
     let mut out = Out::<u8>::at(out.address());
-    let bytes = image_mut(c, &mut out, size, true, format, kind);
+    let bytes = image_mut(c, &mut out, size, target == gl::TEXTURE_3D, format, kind);
     c.get_tex_image(target, level, format, kind, bytes.unwrap_or_default());
 }
 
