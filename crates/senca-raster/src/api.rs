@@ -387,6 +387,8 @@ pub struct Fragments<'a> {
     pub y: u32,
     /// Lanes in a row: 8, or 4 where pixels have several samples.
     pub columns: u32,
+    /// Number of the sample that is merged, where pixels have several; else 0.
+    pub sample: usize,
     /// Bit `i` set: lane `i` is covered, and nearer than what is there.
     pub mask: u16,
     /// Window depth, 0 near to 1 far.

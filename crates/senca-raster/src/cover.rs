@@ -546,6 +546,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             x: (self.tile[0] as usize + place.block % BLOCKS * 8) as u32,
             y: (self.tile[1] as usize + place.block / BLOCKS * 8 + place.pair * 2) as u32,
             columns: 8,
+            sample: 0,
             mask,
             depth,
             varyings,

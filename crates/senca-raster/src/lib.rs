@@ -77,6 +77,7 @@ pub use target::{
     Buffers, Clear, ClearMasks, ColorPlane, MAX_TARGET_SIDE, Target, TargetError, rgba8_from_rgba,
 };
 pub use texture::{
-    Filter, MAX_TEXTURE_SIDE, Mip, Sampler, TexelGrid, Texels, Texture, TextureError, TextureLevel, Wrap,
+    Filter, MAX_TEXTURE_SIDE, Mip, Sampler, SharedTexels, TexelGrid, Texels, Texture, TextureError,
+    TextureLevel, Wrap,
 };
 pub use tiled::{TiledRasterizer, TiledSettings};

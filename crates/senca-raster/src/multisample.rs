@@ -151,6 +151,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             x: (self.tile[0] as usize + block % BLOCKS * 8) as u32 / 2,
             y: (self.tile[1] as usize + block / BLOCKS * 8) as u32 / 2,
             columns: 4,
+            sample: 0,
             mask: any,
             depth,
             varyings: &values[..count],
@@ -168,7 +169,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             if mask == 0 {
                 continue;
             }
-            let sample = Fragments { mask, depth: depths[s], ..fragments };
+            let sample = Fragments { mask, sample: s, depth: depths[s], ..fragments };
             let place = Place { pair: s, ..place };
             let passed = stage.merge(&sample, &shaded, &mut self.pixels(place)) & mask;
             self.counts.passed += u64::from(passed.count_ones());

@@ -264,6 +264,7 @@ fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>;
     let index = j * I::splat(simd, level.width as i32) + i;
     match &level.texels {
         Texels::Rgba8(texels) => crate::blend::unpack(simd, gather(simd, texels, index)),
+        Texels::Shared(texels) => crate::blend::unpack(simd, gather(simd, texels.get(), index)),
         Texels::Srgb8(texels) => {
             let mut out = [[0f32; LANES]; 4];
             gather_light(texels, &index.to_array(), &mut out);
@@ -329,7 +330,8 @@ pub(crate) fn taps<S: Simd, const TAME: bool>(
 fn bilinear<S: Simd>(simd: S, level: &TextureLevel, taps: &Taps<S>) -> Rgba<S> {
     let ([i0, i1], [row0, row1]) = (taps.columns, taps.rows);
     match &level.texels {
-        Texels::Rgba8(texels) => {
+        Texels::Rgba8(_) | Texels::Shared(_) => {
+            let texels = level.texels.rgba8().unwrap_or_default();
             let upper = [gather(simd, texels, row0 + i0), gather(simd, texels, row0 + i1)];
             let lower = [gather(simd, texels, row1 + i0), gather(simd, texels, row1 + i1)];
             mixed(simd, [upper, lower], taps.between(simd))

@@ -170,6 +170,7 @@ impl<'a, 't> Sink<'a, 't> {
             x: self.batch.x as u32 / side,
             y: self.batch.y as u32 / side,
             columns: 8 / side,
+            sample: 0,
             mask: std::mem::take(&mut self.batch.mask),
             depth: if self.samples { self.batch.depth } else { self.batch.depths[0] },
             varyings: &planes[..self.stride],

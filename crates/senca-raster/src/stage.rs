@@ -218,7 +218,7 @@ pub(crate) fn run_stage_on_samples(
     let corner = [2 * fragments.x as usize, 2 * fragments.y as usize];
     let mut count = 0;
     for s in (0..SAMPLES).filter(|&s| masks[s] & shaded.keep != 0) {
-        let sample = Fragments { mask: masks[s] & shaded.keep, depth: depths[s], ..*fragments };
+        let sample = Fragments { mask: masks[s] & shaded.keep, sample: s, depth: depths[s], ..*fragments };
         let mut copied = Copied::of(target, first_row, |i| {
             let (x, y) = place_of(s, i);
             (corner[0] + x, corner[1] + y)

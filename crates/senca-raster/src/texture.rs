@@ -7,6 +7,7 @@
 //! [`TexelGrid`].
 
 use senca_math::{Image, SrgbTable};
+use std::sync::Arc;
 
 /// Longest side of a texture, in texels.
 pub const MAX_TEXTURE_SIDE: u32 = 1 << 15;
@@ -50,11 +51,46 @@ pub enum Texels {
     Srgb8(Vec<[u8; 4]>),
     /// 32-bit floating point.
     Rgba32F(Vec<[f32; 4]>),
+    /// As [`Texels::Rgba8`], in memory of somebody else's.
+    Shared(SharedTexels),
+}
+
+/// Texels of 8 bits a channel in memory that others hold, too. What it gives must always be the same.
+#[derive(Clone)]
+pub struct SharedTexels(pub Arc<dyn AsRef<[[u8; 4]]> + Send + Sync>);
+
+impl std::fmt::Debug for SharedTexels {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "SharedTexels({})", self.get().len())
+    }
+}
+
+impl PartialEq for SharedTexels {
+    fn eq(&self, other: &Self) -> bool {
+        self.get() == other.get()
+    }
+}
+
+impl SharedTexels {
+    pub(crate) fn get(&self) -> &[[u8; 4]] {
+        (*self.0).as_ref()
+    }
 }
 
 impl Texels {
+    /// Texels of 8 bits taken as they are.
+    #[inline(always)]
+    pub(crate) fn rgba8(&self) -> Option<&[[u8; 4]]> {
+        match self {
+            Self::Rgba8(texels) => Some(texels),
+            Self::Shared(shared) => Some(shared.get()),
+            Self::Srgb8(_) | Self::Rgba32F(_) => None,
+        }
+    }
+
     fn len(&self) -> usize {
         match self {
+            Self::Shared(t) => t.get().len(),
             Self::Rgba8(t) | Self::Srgb8(t) => t.len(),
             Self::Rgba32F(t) => t.len(),
         }
@@ -63,6 +99,7 @@ impl Texels {
     fn get(&self, i: usize) -> [f32; 4] {
         match self {
             Self::Rgba8(t) => t[i].map(|v| f32::from(v) * (1.0 / 255.0)),
+            Self::Shared(t) => t.get()[i].map(|v| f32::from(v) * (1.0 / 255.0)),
             Self::Srgb8(t) => light_of(SrgbTable::get(), t[i]),
             Self::Rgba32F(t) => t[i],
         }
@@ -135,7 +172,7 @@ impl TextureLevel {
         let texel = |i: usize| self.mean(&columns[i % width as usize], &rows[i / width as usize]);
         let n = width as usize * height as usize;
         let texels = match &self.texels {
-            Texels::Rgba8(_) => {
+            Texels::Rgba8(_) | Texels::Shared(_) => {
                 Texels::Rgba8((0..n).map(|i| crate::target::rgba8_from_rgba(texel(i))).collect())
             }
             Texels::Srgb8(_) => {

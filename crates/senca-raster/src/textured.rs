@@ -22,7 +22,7 @@ use crate::cover::{At, ColorPath, Place, TileDraw, colors, lanes_from, splat4, v
 use crate::sample::{
     FARTHEST_TAME, Quads, footprint, lerp, load4, lod_of, mixed, pair_texels, quads, sample, taps,
 };
-use crate::texture::{Filter, Mip, Texels, Texture, TextureLevel};
+use crate::texture::{Filter, Mip, Texture, TextureLevel};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 
 /// Vectors kept at most.
@@ -101,7 +101,7 @@ struct TapLanes {
 fn is_staged(unit: &TextureUnit<'_>) -> bool {
     let sampler = &unit.sampler;
     let linear = sampler.magnify == Filter::Linear && sampler.minify == Filter::Linear;
-    linear && matches!(unit.texture.levels[0].texels, Texels::Rgba8(_))
+    linear && unit.texture.levels[0].texels.rgba8().is_some()
 }
 
 /// Whether the level of detail matters.
@@ -330,7 +330,7 @@ impl TapLanes {
 
     #[inline(always)]
     fn fetch(&mut self, level: &TextureLevel) {
-        let Texels::Rgba8(texels) = &level.texels else { return };
+        let Some(texels) = level.texels.rgba8() else { return };
         pair_texels(texels, &self.left, &mut self.texels);
         if self.apart != 0 {
             self.fetch_apart(texels);

@@ -1,14 +1,15 @@
 //! Reading textures sixteen fragments at a time, for the kinds that programs use: two dimensions or a
 //! face of a cube, colours of 8 bits or depths, without borders. The twin of [`super::sample`].
 
+use super::ops::Stencil;
 use super::real::{Color, constant, mixed};
 use super::sample::{LINEAR, Level, Sampled, face_of, on_face};
-use super::shade::Coords;
+use super::shade::{Coords, FogPlan};
 use crate::gl;
 use crate::state::TexTarget;
 use crate::texture::Texels;
 use senca_raster::LANES;
-use senca_raster::simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use senca_raster::simd::{Simd, f32x16, i32x16, mask8x16, mask32x16, prelude::*, u8x16, u32x16};
 
 /// How coordinates outside [0, 1] are brought in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -287,6 +288,56 @@ fn as_taken<S: Simd>(t: &Sampled, v: Color<f32x16<S>>) -> Color<f32x16<S>> {
         gl::ALPHA => [zero, zero, zero, v[0]],
         _ => [v[0], v[0], v[0], one],
     }
+}
+
+/// The stencil test where fragments that fail change nothing, and what those that pass do. Returns them.
+#[inline(always)]
+pub(crate) fn stencil<S: Simd>(simd: S, s: &Stencil, plane: &mut [u8; LANES], mask: u16) -> u16 {
+    let splat = |v: u8| u8x16::splat(simd, v);
+    let stored = u8x16::load_array_ref(simd, plane);
+    let (a, b) = (splat(s.reference & s.value_mask), stored & splat(s.value_mask));
+    let passes = match s.func {
+        gl::NEVER => return 0,
+        gl::LESS => a.simd_lt(b),
+        gl::EQUAL => a.simd_eq(b),
+        gl::LEQUAL => a.simd_le(b),
+        gl::GREATER => a.simd_gt(b),
+        gl::NOTEQUAL => a.simd_ne(b),
+        gl::GEQUAL => a.simd_ge(b),
+        _ => mask8x16::splat(simd, true),
+    };
+    let passed = passes.to_bitmask() as u16 & mask;
+    if s.depth_pass == gl::KEEP || passed == 0 {
+        return passed;
+    }
+    let after = match s.depth_pass {
+        gl::ZERO => splat(0),
+        gl::REPLACE => splat(s.reference),
+        gl::INCR => simd.saturating_add_u8x16(stored, splat(1)),
+        gl::DECR => simd.saturating_sub_u8x16(stored, splat(1)),
+        gl::INCR_WRAP => stored + splat(1),
+        gl::DECR_WRAP => stored - splat(1),
+        _ => stored ^ splat(255),
+    };
+    let written = (stored & splat(!s.write_mask)) | (after & splat(s.write_mask));
+    let lanes = mask8x16::from_bitmask(simd, u64::from(passed));
+    lanes.select(written, stored).store_array(plane);
+    passed
+}
+
+/// See [`FogPlan::factor`].
+#[inline(always)]
+pub(crate) fn fog_factor<S: Simd>(simd: S, fog: &FogPlan, distance: f32x16<S>, mask: u16) -> f32x16<S> {
+    let f = &fog.state;
+    if f.mode == gl::LINEAR && f.end != f.start {
+        let factor = (f32x16::splat(simd, f.end) - distance.abs()) / f32x16::splat(simd, f.end - f.start);
+        return factor.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
+    }
+    let (distances, mut factors) = (distance.to_array(), [0.0; LANES]);
+    for i in (0..LANES).filter(|i| mask >> i & 1 == 1) {
+        factors[i] = fog.factor(distances[i]);
+    }
+    f32x16::load_array_ref(simd, &factors)
 }
 
 /// 8-bit colours as numbers 0 to 1, red in the low byte.

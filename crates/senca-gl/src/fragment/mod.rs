@@ -17,7 +17,7 @@ mod tests;
 mod view;
 
 pub(crate) use ops::Blending;
-pub(crate) use sample::Sampled;
+pub(crate) use sample::{MAX_LOD_BIAS, Sampled};
 pub(crate) use shade::{FogPlan, Shader, Unit};
 pub(crate) use view::View;
 
@@ -55,8 +55,42 @@ pub(crate) struct Program {
     color: ColorWrite,
     writes_color: bool,
     needs_color: bool,
+    /// Where pixels have several samples.
+    samples: Option<SampleMasks>,
     /// One fragment at a time.
     plain: bool,
+}
+
+/// What lessens the samples a fragment covers (OpenGL 1.5, section 4.1.3).
+#[derive(Clone, Copy, Debug)]
+struct SampleMasks {
+    alpha_to_coverage: bool,
+    alpha_to_one: bool,
+    coverage: Option<(f32, bool)>,
+}
+
+impl SampleMasks {
+    fn new(s: &RasterState) -> Option<Self> {
+        let masks = Self {
+            alpha_to_coverage: s.has(Cap::SampleAlphaToCoverage),
+            alpha_to_one: s.has(Cap::SampleAlphaToOne),
+            coverage: s.has(Cap::SampleCoverage).then_some((s.multisample.coverage, s.multisample.invert)),
+        };
+        (masks.alpha_to_coverage || masks.alpha_to_one || masks.coverage.is_some()).then_some(masks)
+    }
+
+    /// Lanes of `mask` whose sample number `sample` is covered. Samples come in one after another as
+    /// the coverage grows.
+    fn covered(&self, sample: usize, alpha: &[f32; LANES], mask: u16) -> u16 {
+        let threshold = (sample as f32 + 0.5) * 0.25;
+        if self.coverage.is_some_and(|(coverage, invert)| (coverage > threshold) == invert) {
+            return 0;
+        }
+        if !self.alpha_to_coverage {
+            return mask;
+        }
+        (0..LANES).filter(|&i| alpha[i] > threshold).fold(0, |covered, i| covered | 1 << i) & mask
+    }
 }
 
 impl Program {
@@ -94,8 +128,16 @@ impl Program {
             color,
             writes_color,
             needs_color: writes_color || alpha.is_some(),
+            samples: SampleMasks::new(s),
             plain: false,
         }
+    }
+
+    /// Whether pixels have several samples.
+    pub(crate) fn with_samples(self, several: bool) -> Self {
+        let samples = self.samples.filter(|_| several);
+        let lessens = samples.is_some_and(|s| s.alpha_to_coverage);
+        Self { needs_color: self.needs_color || lessens, samples, ..self }
     }
 
     /// The same, one fragment at a time.
@@ -225,11 +267,7 @@ impl Program {
             color = [r, g, b, color[3]];
         }
         if let Some(fog) = &self.shader.fog {
-            let mut factors = [0.0; LANES];
-            if let Some(distances) = f.varyings.get(fog.coord) {
-                f.lanes().for_each(|i| factors[i] = fog.factor(distances[i]));
-            }
-            color = fog.mixed(color, f32x16::load_array_ref(simd, &factors));
+            color = fog.mixed(color, fast::fog_factor(simd, fog, varying(fog.coord), f.mask));
         }
         color
     }
@@ -243,7 +281,9 @@ impl Program {
         pixels: &mut Pixels<'_>,
     ) -> u16 {
         let mut passed = f.mask;
-        if self.stencil.is_some() {
+        if let (Some(stencil), None, Some(plane)) = (&self.stencil, &self.depth, &mut pixels.stencil) {
+            passed = fast::stencil(simd, stencil, plane, f.mask);
+        } else if self.stencil.is_some() {
             passed = f.lanes().filter(|&i| self.passes(f, pixels, i)).fold(0, |mask, i| mask | 1 << i);
         }
         if passed == 0 || !self.writes_color {
@@ -327,7 +367,10 @@ impl FragmentStage for Program {
     }
 
     fn discards(&self) -> bool {
-        self.alpha.is_some() || self.polygon_stipple.is_some() || self.stencil.is_some()
+        self.alpha.is_some()
+            || self.polygon_stipple.is_some()
+            || self.stencil.is_some()
+            || self.samples.is_some()
     }
 
     fn shades(&self) -> bool {
@@ -355,6 +398,14 @@ impl FragmentStage for Program {
     }
 
     fn merge(&self, fragments: &Fragments<'_>, shaded: &Shaded, pixels: &mut Pixels<'_>) -> u16 {
+        if let Some(samples) = &self.samples {
+            let mask = samples.covered(fragments.sample, &shaded.rgba[3], fragments.mask);
+            let (f, mut shaded) = (Fragments { mask, ..*fragments }, *shaded);
+            if samples.alpha_to_one {
+                shaded.rgba[3] = [1.0; LANES];
+            }
+            return if mask == 0 { 0 } else { self.merge_plain(&f, &shaded, pixels) };
+        }
         if self.plain {
             return self.merge_plain(fragments, shaded, pixels);
         }

@@ -70,11 +70,6 @@ pub(crate) fn clamped<R: Real>(c: Color<R>) -> Color<R> {
     [c[0].clamped(), c[1].clamped(), c[2].clamped(), c[3].clamped()]
 }
 
-#[inline(always)]
-pub(crate) fn times<R: Real>(a: Color<R>, b: Color<R>) -> Color<R> {
-    [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
-}
-
 /// `c` as many times as `like` is numbers.
 #[inline(always)]
 pub(crate) fn constant<R: Real>(like: R, c: [f32; 4]) -> Color<R> {

@@ -10,7 +10,7 @@ use senca_raster::{
     Compare, Counters, Cull, DepthBias, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading, State,
     StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
-use shading::simple_shading;
+use shading::{simple_shading, simple_texture};
 
 /// The smallest step of a depth buffer of 24 bits.
 const DEPTH_UNIT: f32 = 1.0 / (1 << 24) as f32;
@@ -52,13 +52,15 @@ fn draw(rasterizer: &mut TiledRasterizer, target: &mut Target<'_>, batch: &Batch
         indices: &batch.indices,
         ids: if joins.is_empty() { Ids::Same(0) } else { Ids::Each(&joins) },
     };
-    if let Some((shading, blend)) = simple_shading(s, batch.kind, target) {
+    let texture = simple_texture(batch);
+    if let Some((shading, blend)) = simple_shading(s, batch.kind, target, texture.as_ref()) {
         state.blend = blend;
         return dispatch(rasterizer, target, batch.kind, &primitives, &state, &shading);
     }
     let level = rasterizer.settings().level;
     let buffers = [target.has_depth(), target.has_stencil()];
-    let program = Program::new(s, batch.kind, &batch.layout, level, buffers);
+    state.multisample = side > 1;
+    let program = Program::new(s, batch.kind, &batch.layout, level, buffers).with_samples(side > 1);
     dispatch(rasterizer, target, batch.kind, &primitives, &state, &Shading::Stage(&program))
 }
 
