@@ -36,8 +36,11 @@ impl Context {
     /// Bits of a component of the framebuffer that is drawn to.
     fn buffer_bits(&self, name: Enum) -> Option<Answer> {
         let [color, depth, stencil] = self.framebuffers.draw_formats();
-        let bits =
-            |format: Option<InternalFormat>, name| format.and_then(|format| format.bits(name)).unwrap_or(0);
+        let is_float = self.framebuffers.draw == 0 && self.config.float_color;
+        let bits = |format: Option<InternalFormat>, name| {
+            let bits = format.and_then(|format| format.bits(name)).unwrap_or(0);
+            if is_float && bits == 16 { 32 } else { bits }
+        };
         let accum = if self.framebuffers.draw == 0 && self.config.accum_bits > 0 { 32 } else { 0_u32 };
         let bits = match name {
             gl::RED_BITS => bits(color, gl::TEXTURE_RED_SIZE),

@@ -70,4 +70,6 @@ pub use list::list_name_bytes;
 pub use window::{Colors, max_window_side};
 
 #[cfg(test)]
+mod image_fuzz;
+#[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use super::{BaseFormat, InternalFormat, StorageKind};
 
 /// Most bytes of an image. What asks for more is out of memory.
-pub(crate) const MAX_IMAGE_BYTES: usize = 1 << 30;
+pub(crate) const MAX_IMAGE_BYTES: usize = 1 << 29;
 
 /// Texels of an image, x fastest, then y from the bottom up, then z.
 #[derive(Clone, Debug, PartialEq)]
