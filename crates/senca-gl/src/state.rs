@@ -27,7 +27,6 @@ pub(crate) enum Cap {
     CullFace,
     DebugOutput,
     DebugOutputSynchronous,
-    DepthClamp,
     DepthTest,
     Dither,
     Fog,

@@ -89,7 +89,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let first = b.edge[k][lane].wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y));
             let edge =
                 column * i32x16::splat(simd, dx) + row * i32x16::splat(simd, dy) + i32x16::splat(simd, first);
-            all = all | edge;
+            all |= edge;
         }
         inside &= all.simd_ge(i32x16::splat(simd, 0));
         if self.partial {

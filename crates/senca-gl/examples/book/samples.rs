@@ -49,7 +49,9 @@ pub(crate) fn texture(c: &mut Context, aspect: f64) {
     c.load_identity();
     c.translate([0.0, 0.0, -3.6]);
     c.begin(gl::QUADS);
-    for [left, right, back] in [[-2.0, 0.0, 0.0], [1.0, 2.41421, -1.41421]] {
+    // The second one, two units wide, is turned by 45 degrees.
+    let turned = std::f64::consts::SQRT_2;
+    for [left, right, back] in [[-2.0, 0.0, 0.0], [1.0, 1.0 + turned, -turned]] {
         c.tex_coord([0.0, 0.0]);
         c.vertex([left, -1.0, 0.0]);
         c.tex_coord([0.0, 1.0]);
