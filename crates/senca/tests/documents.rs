@@ -14,13 +14,14 @@ use senca::io::Limits;
 use senca::io::images::decode_picture;
 use senca::math::{LinearRgb, Srgb8};
 
-/// Commands that are not run here, because they build or measure, or run in `senca-osmesa`: the builds run in `.ci/run`, the
-/// measurements in `cli.rs`, with less patience.
+/// Commands that are not run here, because they build or measure, or run in the tests of `senca-gl` and
+/// `senca-osmesa`: the builds run in `.ci/run`, the measurements in `cli.rs`, with less patience.
 const CHECKED_ELSEWHERE: &[&str] = &[
     ".ci/run",
     "cargo test --workspace",
     "REPLACE=1 cargo test --workspace",
     "cargo build --release -p senca",
+    "cargo run --release -p senca-gl --example ",
     "cc -o picture ",
     "LD_LIBRARY_PATH=target/release ./picture",
     "cargo install --path crates/senca",
