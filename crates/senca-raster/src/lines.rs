@@ -19,9 +19,10 @@ use crate::api::{
 use crate::assemble::{varyings_of, vertex_count};
 use crate::clip::{VIEW_VOLUME, clip_line, wholly_outside};
 use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, ceil_div};
+use crate::shade::source_color;
 use crate::sink::Sink;
 use crate::smooth;
-use crate::target::Target;
+use crate::target::{Target, rgba8_from_rgba};
 use rayon::prelude::*;
 use senca_math::glam::Vec4;
 use std::ops::Range;
@@ -316,6 +317,7 @@ impl Stroke<2> for Line {
         };
         match &self.outline {
             Some(outline) => self.draw_smooth(sink, outline, stipple, &at),
+            None if self.draw_plain(sink, values) => return,
             None => self.draw_steps(sink, stipple, &at),
         }
         sink.end(&at);
@@ -323,6 +325,54 @@ impl Stroke<2> for Line {
 }
 
 impl Line {
+    /// Draws a line one pixel wide, in plain colours and wholly within the bounds but for rows, as most
+    /// are; whether it is one.
+    fn draw_plain(&self, sink: &mut Sink<'_, '_>, values: [&[f32]; 2]) -> bool {
+        let (walk, state, b) = (&self.walk, sink.state, sink.bounds);
+        if walk.width != 1 || state.stipple.is_some() {
+            return false;
+        }
+        let [ox, oy] = self.origin;
+        let steps = walk.steps_in(&(i64::from(b.y0) - oy..i64::from(b.y1) - oy));
+        if steps.is_empty() {
+            return true;
+        }
+        let column = |step: i64| {
+            let (a, b) = walk.at(step);
+            if walk.along_x { a + ox } else { b + ox }
+        };
+        let inside = |x: i64| x >= i64::from(b.x0) && x < i64::from(b.x1);
+        if !inside(column(steps.start)) || !inside(column(steps.end - 1)) {
+            return false;
+        }
+        let Some(mut plain) = sink.plain() else { return false };
+        let ends = match state.interpolation {
+            Interpolation::FlatFirst => [values[0]; 2],
+            Interpolation::FlatLast => [values[1]; 2],
+            _ => values,
+        };
+        let [from, to] = ends.map(|values| source_color(&plain.color, values));
+        let way: [f32; 4] = std::array::from_fn(|k| to[k] - from[k]);
+        let screen_space = state.interpolation == Interpolation::Screen;
+        let mut across = Across::new(walk, steps.start);
+        for step in steps {
+            let (a, b) = (walk.first + walk.sign * step, across.pixel);
+            across.advance();
+            let (x, y) = if walk.along_x { (a, b) } else { (b, a) };
+            let at = ((y + oy) as usize - plain.first_row) * plain.width + (x + ox) as usize;
+            let t = walk.share(a);
+            if !plain.passes(at, self.depth(t), state) {
+                continue;
+            }
+            let parameter = self.parameter(t, screen_space);
+            let color = std::array::from_fn(|k| from[k] + parameter * way[k]);
+            if let Some(pixel) = plain.pixels.get_mut(at) {
+                *pixel = rgba8_from_rgba(color);
+            }
+        }
+        true
+    }
+
     fn draw_steps(&self, sink: &mut Sink<'_, '_>, stipple: u64, values: &impl Fn(i32, i32, &mut [f32])) {
         let walk = &self.walk;
         let rows = i64::from(sink.bounds.y0) - self.origin[1]..i64::from(sink.bounds.y1) - self.origin[1];
@@ -379,6 +429,11 @@ fn floor_div(a: i64, b: i64) -> i64 {
     a.div_euclid(b)
 }
 
+/// `a / 2^bits` rounded up.
+fn shift_up(a: i64, bits: u32) -> i64 {
+    (a + (1 << bits) - 1) >> bits
+}
+
 impl Walk {
     fn new(start: &ScreenVertex, end: &ScreenVertex, width: f32, rule: StrokeRule) -> Self {
         // A sub-pixel of OpenGL's rule is a quarter as long, so that "a little lower" can be said.
@@ -393,8 +448,9 @@ impl Walk {
         let half = sub / 2;
         // Pixel centres from the start, included, to the end, not included, whichever way it runs.
         let sign = way[0].signum();
-        let first = sign * ceil_div(sign * (start[0] - half), sub);
-        let count = (ceil_div(sign * (start[0] + way[0] - half), sub) - sign * first).max(0);
+        let bits = sub.trailing_zeros();
+        let first = sign * shift_up(sign * (start[0] - half), bits);
+        let count = (shift_up(sign * (start[0] + way[0] - half), bits) - sign * first).max(0);
         let mut walk = Self { along_x, width: whole_size(width), sub, first, sign, count, start, way };
         if fine && sign != 0 {
             walk.leave_diamonds();
@@ -406,11 +462,10 @@ impl Walk {
     /// last one if the line ends in its diamond.
     fn leave_diamonds(&mut self) {
         let half = self.sub / 2;
-        let in_diamond = |p: [i64; 2]| {
-            let off = p.map(|c| (c - floor_div(c, self.sub) * self.sub - half).abs());
-            off[0] + off[1] < half
-        };
-        let beyond_centre = |c: i64| self.sign * (c - floor_div(c, self.sub) * self.sub - half) > 0;
+        // From the centre of its pixel.
+        let off_centre = |c: i64| (c & (self.sub - 1)) - half;
+        let in_diamond = |p: [i64; 2]| off_centre(p[0]).abs() + off_centre(p[1]).abs() < half;
+        let beyond_centre = |c: i64| self.sign * off_centre(c) > 0;
         let end = [self.start[0] + self.way[0], self.start[1] + self.way[1]];
         let add = beyond_centre(self.start[0]) && in_diamond(self.start);
         let drop = beyond_centre(end[0]) && in_diamond(end);
@@ -572,6 +627,16 @@ impl Stroke<1> for Square {
             return;
         }
         let ([x, y], b) = (self.first, sink.bounds);
+        let state = sink.state;
+        if let Some(mut plain) = sink.plain() {
+            let color = rgba8_from_rgba(source_color(&plain.color, values));
+            for row in y.max(i64::from(b.y0))..(y + self.side).min(i64::from(b.y1)) {
+                let columns = x.max(i64::from(b.x0))..(x + self.side).min(i64::from(b.x1));
+                let first = (row as usize - plain.first_row) * plain.width;
+                columns.for_each(|x| plain.put(first + x as usize, self.depth, state, color));
+            }
+            return;
+        }
         for row in y.max(i64::from(b.y0))..(y + self.side).min(i64::from(b.y1)) {
             for column in x.max(i64::from(b.x0))..(x + self.side).min(i64::from(b.x1)) {
                 sink.fragment([column, row], self.depth, 1.0, &same);

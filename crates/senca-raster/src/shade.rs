@@ -74,17 +74,24 @@ pub(crate) fn shade_plain(
 pub(crate) fn color_of_values(shading: &Shading<'_>, values: &[f32]) -> [f32; 4] {
     let Shading::Fixed { color, texture } = shading else { return [0.0, 0.0, 0.0, 1.0] };
     let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
-    let rgba = match *color {
+    let rgba = source_color(color, values);
+    let Some(unit) = texture else { return rgba };
+    let uv = [at(unit.coords), at(unit.coords.saturating_add(1))];
+    let texel = unit.sampler.sample(unit.texture, uv, [[0.0; 2]; 2]);
+    std::array::from_fn(|k| rgba[k] * texel[k])
+}
+
+/// The colour among the varyings of a fragment or a corner.
+#[inline(always)]
+pub(crate) fn source_color(color: &ColorSource, values: &[f32]) -> [f32; 4] {
+    let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
+    match *color {
         ColorSource::Constant(rgba) => rgba,
         ColorSource::Rgb { first: f } => [at(f), at(f.saturating_add(1)), at(f.saturating_add(2)), 1.0],
         ColorSource::Rgba { first: f } => {
             [at(f), at(f.saturating_add(1)), at(f.saturating_add(2)), at(f.saturating_add(3))]
         }
-    };
-    let Some(unit) = texture else { return rgba };
-    let uv = [at(unit.coords), at(unit.coords.saturating_add(1))];
-    let texel = unit.sampler.sample(unit.texture, uv, [[0.0; 2]; 2]);
-    std::array::from_fn(|k| rgba[k] * texel[k])
+    }
 }
 
 fn color_of(color: &ColorSource, varyings: &[[f32; LANES]], lane: usize) -> [f32; 4] {

@@ -1,13 +1,12 @@
 //! Where the fragments of lines, points and antialiased triangles go: a strip of the target, one
 //! fragment after another.
 
-use crate::api::Counters;
-use crate::api::{Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
+use crate::api::{ColorSource, Counters, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
 use crate::multisample::{SAMPLES, place_of, sample_of};
 use crate::setup::{Bounds, ScreenMap};
 use crate::shade::color_of_values;
 use crate::stage::{run_stage, run_stage_on_samples, stage_of};
-use crate::target::Target;
+use crate::target::{ColorPlane, Target};
 
 /// A strip of the target, and what is drawn into it.
 pub(crate) struct Sink<'a, 't> {
@@ -29,6 +28,45 @@ pub(crate) struct Sink<'a, 't> {
     batch: Batch,
     values: [f32; MAX_VARYINGS],
     pub(crate) counters: Counters,
+}
+
+/// Planes of a strip, for fragments in plain colours.
+pub(crate) struct Plain<'a> {
+    pub(crate) pixels: &'a mut [[u8; 4]],
+    pub(crate) depth: Option<&'a mut [f32]>,
+    pub(crate) width: usize,
+    pub(crate) first_row: usize,
+    pub(crate) color: ColorSource,
+    pub(crate) counters: &'a mut Counters,
+}
+
+impl Plain<'_> {
+    /// Whether a fragment passes the depth test at a pixel, which then has its depth.
+    #[inline(always)]
+    pub(crate) fn passes(&mut self, at: usize, depth: f32, state: &State) -> bool {
+        self.counters.tested += 1;
+        if let Some(stored) = self.depth.as_mut().and_then(|plane| plane.get_mut(at)) {
+            if !state.depth_test.passes(depth, *stored) {
+                return false;
+            }
+            if state.depth_write {
+                *stored = depth;
+            }
+        }
+        self.counters.passed += 1;
+        self.counters.shaded += 1;
+        true
+    }
+
+    /// A fragment of a colour.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, at: usize, depth: f32, state: &State, color: [u8; 4]) {
+        if self.passes(at, depth, state)
+            && let Some(pixel) = self.pixels.get_mut(at)
+        {
+            *pixel = color;
+        }
+    }
 }
 
 /// Fragments of one primitive, of two rows of 8 pixels.
@@ -84,6 +122,24 @@ impl<'a, 't> Sink<'a, 't> {
     /// Begins a primitive of `stride` varyings.
     pub(crate) fn begin(&mut self, id: u32, front: bool, stride: usize) {
         (self.id, self.front, self.stride) = (id, front, stride.min(MAX_VARYINGS));
+    }
+
+    /// The planes, where fragments go in plain colours, unblended, to 8 bits.
+    pub(crate) fn plain(&mut self) -> Option<Plain<'_>> {
+        let Shading::Fixed { color, texture: None } = self.shading else { return None };
+        let simple = self.state.blend.is_none() && self.target.ids.is_none();
+        let width = self.target.width as usize;
+        let Some(ColorPlane::Rgba8(pixels)) = self.target.color.as_mut().filter(|_| simple) else {
+            return None;
+        };
+        Some(Plain {
+            pixels,
+            depth: self.target.depth.as_deref_mut(),
+            width,
+            first_row: self.first_row as usize,
+            color: *color,
+            counters: &mut self.counters,
+        })
     }
 
     /// A fragment; `values` gives the varyings at a pixel. No pixel may come twice in a primitive.

@@ -2,8 +2,8 @@
 
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Blend, Buffers, Compare, Ids, Interpolation, LineStipple, Primitives, Rasterizer, ScanlineRasterizer,
-    Shading, State, StippleJoins, StrokeRule, TiledRasterizer, TiledSettings,
+    Blend, Buffers, ColorPlane, Compare, Factor, Ids, Interpolation, LineStipple, Primitives, Rasterizer,
+    ScanlineRasterizer, Shading, State, StippleJoins, StrokeRule, Target, TiledRasterizer, TiledSettings,
 };
 
 const SIDE: u32 = 16;
@@ -277,5 +277,37 @@ fn antialiased_neighbours_add_up_to_one() {
         assert!((buffers.color.pixel(7, 7)[3] - 1.0).abs() < 1e-5);
         let most = buffers.color.pixels().iter().map(|p| p[3]).fold(0.0, f32::max);
         assert!(most < 1.000_01);
+    }
+}
+
+#[test]
+fn plain_colours_take_the_short_way_to_the_same_pixels() {
+    let places = scattered(1500);
+    let indices: Vec<u32> = (0..1500).collect();
+    let colors: Vec<f32> = (0..1500 * 3).map(|i| (i % 97) as f32 / 96.0).collect();
+    let p =
+        Primitives { positions: &places, varyings: &colors, stride: 3, indices: &indices, ids: Ids::Same(0) };
+    let same = Blend { source: Factor::One, destination: Factor::Zero };
+    let scissor = Some(senca_raster::Rect { x: 3, y: 5, width: 40, height: 30 });
+    let states = [
+        State::default(),
+        State { strokes: StrokeRule::OpenGl, point_size: 3.0, ..State::default() },
+        State { interpolation: Interpolation::FlatLast, scissor, ..State::default() },
+        State { interpolation: Interpolation::Screen, depth_write: false, ..State::default() },
+    ];
+    for state in states {
+        let draw = |blend: Option<Blend>| {
+            let (mut color, mut depth) = (vec![[7u8; 4]; 61 * 47], vec![1f32; 61 * 47]);
+            let mut target = Target::new(61, 47)
+                .and_then(|t| t.with_color(ColorPlane::Rgba8(&mut color)))
+                .and_then(|t| t.with_depth(&mut depth))
+                .unwrap();
+            let state = State { blend, ..state };
+            let mut rasterizer = TiledRasterizer::default();
+            let lines = rasterizer.draw_lines(&mut target, &p, &state, &Shading::vertex_rgb());
+            let points = rasterizer.draw_points(&mut target, &p, &state, &Shading::vertex_rgb());
+            (color, depth, lines, points)
+        };
+        assert!(draw(None) == draw(Some(same)));
     }
 }
