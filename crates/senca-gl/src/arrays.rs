@@ -123,7 +123,7 @@ impl ClientState {
         })
     }
 
-    fn array_mut(&mut self, name: Enum) -> Option<&mut VertexArray> {
+    pub(crate) fn array_mut(&mut self, name: Enum) -> Option<&mut VertexArray> {
         Some(match name {
             gl::VERTEX_ARRAY => &mut self.vertex,
             gl::NORMAL_ARRAY => &mut self.normal,
@@ -507,7 +507,7 @@ impl Context {
 
     /// `glDrawArrays`: primitives of `count` vertices from number `first` on.
     pub fn draw_arrays(&mut self, mode: Enum, first: i32, count: i32) {
-        self.outside(|c| {
+        self.draws(|c| {
             let (Ok(first), Ok(count)) = (usize::try_from(first), usize::try_from(count)) else {
                 return c.error(gl::INVALID_VALUE);
             };
@@ -515,7 +515,7 @@ impl Context {
                 return c.error(gl::INVALID_ENUM);
             }
             if count == 0 || !c.client.vertex.enabled {
-                return;
+                return c.draw_nothing();
             }
             match c.read_arrays(first, count, c.compiling.is_some()) {
                 Ok(arrays) => c.draw_read(mode, arrays, None),
@@ -524,14 +524,30 @@ impl Context {
         });
     }
 
+    /// Does a command that draws arrays. Between `begin` and `end` it is an error, which a list being made remembers.
+    fn draws(&mut self, draw: impl FnOnce(&mut Self)) {
+        if self.immediate.active() {
+            self.submit(|_| {});
+        } else {
+            draw(self);
+        }
+    }
+
+    /// Nothing is to be drawn; a list remembers even that, which is an error between `begin` and `end`.
+    fn draw_nothing(&mut self) {
+        if self.compiling.is_some() {
+            self.submit(|_| {});
+        }
+    }
+
     /// `glDrawElements` with numbers of vertices already read.
     pub fn draw_elements(&mut self, mode: Enum, elements: &[u32]) {
-        self.outside(|c| {
+        self.draws(|c| {
             if mode > gl::POLYGON {
                 return c.error(gl::INVALID_ENUM);
             }
             if elements.is_empty() || !c.client.vertex.enabled {
-                return;
+                return c.draw_nothing();
             }
             let (low, high) = elements.iter().fold((u32::MAX, 0), |(l, h), e| (l.min(*e), h.max(*e)));
             let (first, count) = (low as usize, (high - low) as usize + 1);
@@ -561,7 +577,7 @@ impl Context {
     /// `glDrawElements`: `count` numbers of type `kind` (`UNSIGNED_BYTE`, `UNSIGNED_SHORT`, `UNSIGNED_INT`), from `source`,
     /// where [`ArraySource::Buffer`] is the bound element buffer.
     pub fn draw_elements_of(&mut self, mode: Enum, count: i32, kind: Enum, source: &ArraySource) {
-        self.outside(|c| {
+        self.draws(|c| {
             let Ok(count) = usize::try_from(count) else { return c.error(gl::INVALID_VALUE) };
             if mode > gl::POLYGON
                 || !matches!(kind, gl::UNSIGNED_BYTE | gl::UNSIGNED_SHORT | gl::UNSIGNED_INT)
@@ -569,7 +585,7 @@ impl Context {
                 return c.error(gl::INVALID_ENUM);
             }
             if count == 0 || !c.client.vertex.enabled {
-                return;
+                return c.draw_nothing();
             }
             match c.read_elements(count, kind, source) {
                 Ok(elements) => c.draw_elements(mode, &elements),

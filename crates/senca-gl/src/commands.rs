@@ -60,6 +60,9 @@ impl Context {
             unit.enabled[target as usize] = on;
         } else if (gl::TEXTURE_GEN_S..=gl::TEXTURE_GEN_Q).contains(&cap) {
             unit.generation[(cap - gl::TEXTURE_GEN_S) as usize].enabled = on;
+        } else if let Some(array) = self.client.array_mut(cap) {
+            // Meant for `enable_client_state`; programs rely on it here too.
+            array.enabled = on;
         } else {
             return self.error(gl::INVALID_ENUM);
         }
@@ -608,7 +611,8 @@ impl Context {
             }
             gl::TEXTURE_ENV_COLOR if count >= 4 => env.color = v.map(crate::vertex::clamp01),
             gl::COMBINE_RGB => {
-                let more = matches!(token, gl::DOT3_RGB | gl::DOT3_RGBA);
+                let more =
+                    matches!(token, gl::DOT3_RGB | gl::DOT3_RGBA | gl::DOT3_RGB_EXT | gl::DOT3_RGBA_EXT);
                 env.combine_rgb = check(more || is_combination(token))?;
             }
             gl::COMBINE_ALPHA => env.combine_alpha = check(is_combination(token))?,

@@ -58,7 +58,7 @@ pub(crate) struct Debug {
     log: VecDeque<DebugMessage>,
     rules: Vec<Rule>,
     groups: Vec<(DebugMessage, usize)>,
-    labels: HashMap<(Enum, usize), String>,
+    labels: HashMap<(Enum, u32), String>,
 }
 
 impl std::fmt::Debug for Debug {
@@ -213,8 +213,27 @@ impl Context {
         self.debug.message(message);
     }
 
-    /// `glObjectLabel` and `glObjectPtrLabel`: names an object of a kind; an empty label takes the name away.
-    pub fn object_label(&mut self, kind: Enum, name: usize, label: &str) {
+    /// Whether there is an object of a kind that can have a label.
+    fn check_object(&mut self, kind: Enum, name: u32) -> Result<(), Enum> {
+        let exists = match kind {
+            gl::BUFFER => self.is_buffer(name),
+            gl::DISPLAY_LIST => self.is_list(name),
+            gl::FRAMEBUFFER => self.is_framebuffer(name),
+            gl::QUERY => self.is_query(name),
+            gl::RENDERBUFFER => self.is_renderbuffer(name),
+            gl::TEXTURE => self.is_texture(name),
+            // Of these there are none.
+            gl::PROGRAM | gl::SAMPLER | gl::SHADER | gl::VERTEX_ARRAY => false,
+            _ => return Err(gl::INVALID_ENUM),
+        };
+        if exists { Ok(()) } else { Err(gl::INVALID_VALUE) }
+    }
+
+    /// `glObjectLabel`: names an object of a kind; an empty label takes the name away.
+    pub fn object_label(&mut self, kind: Enum, name: u32, label: &str) {
+        if let Err(error) = self.check_object(kind, name) {
+            return self.error(error);
+        }
         if label.len() >= MAX_LABEL {
             return self.error(gl::INVALID_VALUE);
         }
@@ -225,9 +244,12 @@ impl Context {
         }
     }
 
-    /// `glGetObjectLabel`; empty when there is none.
-    #[must_use]
-    pub fn get_object_label(&self, kind: Enum, name: usize) -> &str {
-        self.debug.labels.get(&(kind, name)).map_or("", String::as_str)
+    /// `glGetObjectLabel`; empty when it has none, `None` when there is no such object.
+    pub fn get_object_label(&mut self, kind: Enum, name: u32) -> Option<&str> {
+        if let Err(error) = self.check_object(kind, name) {
+            self.error(error);
+            return None;
+        }
+        Some(self.debug.labels.get(&(kind, name)).map_or("", String::as_str))
     }
 }

@@ -589,10 +589,9 @@ impl Context {
         })
     }
 
-    /// The rows of the polygon stipple from the bottom, the most significant bit left.
-    #[must_use]
-    pub fn polygon_stipple_rows(&self) -> [u32; 32] {
-        self.state.polygon_stipple.0
+    /// `glGetPolygonStipple`: the rows from the bottom, the most significant bit left; `None` in case of error.
+    pub fn get_polygon_stipple(&mut self) -> Option<[u32; 32]> {
+        self.found(|c| Some(c.state.polygon_stipple.0))
     }
 
     /// An answer, or `INVALID_ENUM`.

@@ -226,7 +226,10 @@ impl Plan {
             (true, gl::FOG_COORD) => FogSource::Coordinate,
             _ => FogSource::Distance,
         };
-        let textured = (0..TEXTURE_UNITS).filter(|&k| s.texturing.units[k].enabled.contains(&true));
+        // What is fed back has coordinates of the first unit even when it has no texture.
+        let feedback = context.render_mode.mode == gl::FEEDBACK;
+        let textured = (0..TEXTURE_UNITS)
+            .filter(|&k| feedback && k == 0 || s.texturing.units[k].enabled.contains(&true));
         let units: Vec<UnitPlan> = textured.map(|k| unit_plan(context, k)).collect();
         let mask = units.iter().fold(0, |mask, u| mask | 1 << u.unit);
         let clip_planes: Vec<Vec4> = (0..CLIP_PLANES)
@@ -347,7 +350,8 @@ impl Plan {
 
     /// The size of a point at `eye`, before it is clamped for drawing (OpenGL 1.5, section 3.3).
     fn point_size(&self, eye: Vec4) -> f32 {
-        let d = (eye.xyz() / eye.w).length();
+        // The distance along the axis of view, as drivers take it.
+        let d = (eye.z / eye.w).abs();
         let [a, b, c] = self.point.attenuation;
         let size = self.point.size / (a + b * d + c * d * d).sqrt();
         if size.is_finite() { size.clamp(self.point.min, self.point.max) } else { self.point.max }

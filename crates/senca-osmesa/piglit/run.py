@@ -60,10 +60,12 @@ def result_of(output, code):
     """Result, and results of the parts of a test."""
     whole, parts = None, {}
     for line in output.splitlines():
-        if not line.startswith("PIGLIT:"):
+        # Some programs leave the line before open.
+        before, found, after = line.partition("PIGLIT: {")
+        if not found:
             continue
         try:
-            told = json.loads(line[7:])
+            told = json.loads("{" + after)
         except ValueError:
             continue
         for name in told.get("enumerate subtests", []):

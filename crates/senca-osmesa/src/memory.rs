@@ -8,6 +8,10 @@ use senca_gl::ClientMemory;
 use smallvec::SmallVec;
 use std::ffi::c_void;
 
+/// No program has memory below this address. A pointer there is NULL, or an offset in a buffer of a kind that
+/// there is not.
+const LOWEST_ADDRESS: usize = 1 << 16;
+
 /// Numbers that any bits are a value of.
 ///
 /// # Safety
@@ -42,7 +46,7 @@ impl<T> Copy for In<T> {}
 
 impl<T> In<T> {
     pub(crate) fn is_null(self) -> bool {
-        self.0.is_null()
+        self.0.addr() < LOWEST_ADDRESS
     }
 
     /// Where it is.
@@ -57,7 +61,7 @@ impl<T> In<T> {
 
     /// `len` bytes; nothing when there are none or the pointer is NULL.
     pub(crate) fn bytes(&self, len: usize) -> Option<&[u8]> {
-        let possible = !self.0.is_null() && isize::try_from(len).is_ok();
+        let possible = !self.is_null() && isize::try_from(len).is_ok();
         // SAFETY: the program answers for `len` bytes behind a pointer that is not NULL (see the module), and
         // does not change them during the call.
         possible.then(|| unsafe { std::slice::from_raw_parts(self.0.cast(), len) })
@@ -70,19 +74,19 @@ impl<T: Plain> In<T> {
     pub(crate) fn array<const N: usize>(self) -> Option<[T; N]> {
         // SAFETY: the program answers for `N` numbers behind a pointer that is not NULL (see the module); they
         // need not be aligned, and any bits are a number.
-        (!self.0.is_null()).then(|| unsafe { self.0.cast::<[T; N]>().read_unaligned() })
+        (!self.is_null()).then(|| unsafe { self.0.cast::<[T; N]>().read_unaligned() })
     }
 
     /// The number `k` places further.
     pub(crate) fn get(self, k: usize) -> Option<T> {
         // SAFETY: as in `array`.
-        (!self.0.is_null()).then(|| unsafe { self.0.add(k).read_unaligned() })
+        (!self.is_null()).then(|| unsafe { self.0.add(k).read_unaligned() })
     }
 
     /// The first `n` numbers; `None` for NULL or a negative `n`.
     pub(crate) fn values(self, n: i32) -> Option<Few<T>> {
         let n = usize::try_from(n).ok()?;
-        if self.0.is_null() {
+        if self.is_null() {
             return None;
         }
         let mut values = Few::new();
@@ -110,7 +114,7 @@ impl In<u8> {
     pub(crate) fn text(self, len: i32) -> Option<String> {
         let bytes = match usize::try_from(len) {
             Ok(len) => self.bytes(len)?,
-            Err(_) if self.0.is_null() => return None,
+            Err(_) if self.is_null() => return None,
             // SAFETY: the program answers for a closing zero behind a pointer that is not NULL.
             Err(_) => unsafe { std::ffi::CStr::from_ptr(self.0.cast()) }.to_bytes(),
         };
@@ -132,7 +136,7 @@ impl<T> Copy for Out<T> {}
 
 impl<T> Out<T> {
     pub(crate) fn is_null(self) -> bool {
-        self.0.is_null()
+        self.0.addr() < LOWEST_ADDRESS
     }
 
     /// Where it is.
@@ -152,7 +156,7 @@ impl<T> Out<T> {
 
     /// `len` bytes to be written; `None` for NULL or more bytes than there can be.
     pub(crate) fn bytes(&mut self, len: usize) -> Option<&mut [u8]> {
-        let possible = !self.0.is_null() && isize::try_from(len).is_ok();
+        let possible = !self.is_null() && isize::try_from(len).is_ok();
         // SAFETY: the program answers for `len` bytes behind a pointer that is not NULL (see the module), and
         // does not touch them during the call.
         possible.then(|| unsafe { std::slice::from_raw_parts_mut(self.0.cast(), len) })
@@ -163,7 +167,7 @@ impl<T: Copy> Out<T> {
     /// Writes numbers one after another.
     #[inline]
     pub(crate) fn write(self, values: &[T]) {
-        if !self.0.is_null() {
+        if !self.is_null() {
             for (k, value) in values.iter().enumerate() {
                 // SAFETY: the program answers for as many numbers as the command writes behind a pointer that
                 // is not NULL; they need not be aligned.
@@ -200,7 +204,7 @@ pub(crate) struct ProgramMemory;
 impl ClientMemory for ProgramMemory {
     fn with(&self, address: usize, len: usize, read: &mut dyn FnMut(&[u8])) {
         let start = std::ptr::with_exposed_provenance::<u8>(address);
-        if !start.is_null() && isize::try_from(len).is_ok() {
+        if address >= LOWEST_ADDRESS && isize::try_from(len).is_ok() {
             // SAFETY: the program answers for the elements of its arrays that it draws, and does not change
             // them during the call.
             read(unsafe { std::slice::from_raw_parts(start, len) });

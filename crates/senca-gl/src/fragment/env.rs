@@ -93,11 +93,15 @@ fn combine<R: Real>(env: &TexEnv, s: &Sources<'_, R>) -> Color<R> {
     let alphas = |k: usize| operand(env, s, env.source_alpha[k], env.operand_alpha[k])[3];
     let (a, b, c) = (colors(0), colors(1), colors(2));
     let scaled = |v: R, scale: f32| (v * v.like(scale)).clamped();
-    if matches!(env.combine_rgb, gl::DOT3_RGB | gl::DOT3_RGBA) {
+    let extension = matches!(env.combine_rgb, gl::DOT3_RGB_EXT | gl::DOT3_RGBA_EXT);
+    if extension || matches!(env.combine_rgb, gl::DOT3_RGB | gl::DOT3_RGBA) {
         let half = a[0].like(0.5);
         let product = |k: usize| (a[k] - half) * (b[k] - half);
-        let dot = scaled((product(0) + product(1) + product(2)) * half.like(4.0), env.rgb_scale);
-        if env.combine_rgb == gl::DOT3_RGBA {
+        let dot = scaled(
+            (product(0) + product(1) + product(2)) * half.like(4.0),
+            if extension { 1.0 } else { env.rgb_scale },
+        );
+        if matches!(env.combine_rgb, gl::DOT3_RGBA | gl::DOT3_RGBA_EXT) {
             return [dot; 4];
         }
         let alpha = combined(env.combine_alpha, alphas(0), alphas(1), alphas(2));

@@ -88,7 +88,9 @@ impl Unit {
             }
             let mut at = lanes.map(|i| [0, 1, 2].map(|k| coords.at[k][i]));
             if self.texture.target == TexTarget::Cube {
-                let face = face_of(at[0]);
+                // Fragments outside of the mask may look past the edge of the face.
+                let seen = lanes.iter().position(|i| f.mask >> i & 1 == 1).unwrap_or(0);
+                let face = face_of(at[seen]);
                 at = at.map(|direction| on_face(face, direction));
             }
             let change = |a: usize, b: usize| -> [f32; 3] { std::array::from_fn(|k| at[b][k] - at[a][k]) };

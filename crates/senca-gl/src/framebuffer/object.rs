@@ -85,13 +85,7 @@ impl FramebufferObject {
         if !any {
             return gl::FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT;
         }
-        let missing = |buffer| self.color_of(buffer).is_some_and(Attachment::is_none);
-        if missing(self.draw_buffer) {
-            return gl::FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER;
-        }
-        if missing(self.read_buffer) {
-            return gl::FRAMEBUFFER_INCOMPLETE_READ_BUFFER;
-        }
+        // A draw or read buffer without attachment is no fault, as since OpenGL 4.1: programs rely on it.
         gl::FRAMEBUFFER_COMPLETE
     }
 }

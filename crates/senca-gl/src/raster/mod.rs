@@ -6,14 +6,15 @@ use crate::fragment::Program;
 use crate::raster_state::{Batch, Kind, RasterState};
 use crate::state::Cap;
 use crate::{Context, Enum, gl};
+use senca_math::glam::Vec4;
 use senca_raster::{
     Compare, Counters, Cull, DepthBias, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading, State,
     StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
 use shading::{simple_shading, simple_texture};
 
-/// The smallest step of a depth buffer of 24 bits.
-const DEPTH_UNIT: f32 = 1.0 / (1 << 24) as f32;
+/// A step of depth that is never lost: two of the smallest of 24 bits.
+const DEPTH_UNIT: f32 = 1.0 / (1 << 23) as f32;
 
 impl Context {
     /// Draws a batch; returns how many samples passed.
@@ -45,8 +46,9 @@ fn draw(rasterizer: &mut TiledRasterizer, target: &mut Target<'_>, batch: &Batch
         Some(_) => batch.continues.iter().map(|goes_on| u32::from(*goes_on)).collect(),
         None => Vec::new(),
     };
+    let lifted = lifted(batch, state.depth_bias.constant);
     let primitives = Primitives {
-        positions: &batch.positions,
+        positions: lifted.as_deref().unwrap_or(&batch.positions),
         varyings,
         stride,
         indices: &batch.indices,
@@ -111,7 +113,7 @@ fn raster_state(batch: &Batch) -> State {
         depth_range: [s.viewport.near as f32, s.viewport.far as f32],
         depth_bias: depth_bias(s, batch.kind),
         line_width: s.line.width,
-        point_size: s.point.size,
+        point_size: s.point.size.clamp(s.point.min.min(s.point.max), s.point.max),
         point_sizes: sizes.then(|| usize::from(batch.layout.stride)),
         strokes: StrokeRule::OpenGl,
         stipple: (lines && s.has(Cap::LineStipple)).then_some(LineStipple {
@@ -165,6 +167,17 @@ fn cull(s: &RasterState) -> Cull {
         (gl::BACK, true) | (gl::FRONT, false) => Cull::Back,
         _ => Cull::Front,
     }
+}
+
+/// Corners of polygons drawn as lines or points, with the constant part of their offset: the rasterizer offsets
+/// triangles only.
+fn lifted(batch: &Batch, constant: f32) -> Option<Vec<Vec4>> {
+    let outlined = matches!(batch.kind, Kind::PolygonLines | Kind::PolygonPoints);
+    let range = (batch.state.viewport.far - batch.state.viewport.near) as f32;
+    (outlined && constant != 0.0 && range != 0.0).then(|| {
+        let lift = Vec4::new(0.0, 0.0, constant / range, 0.0);
+        batch.positions.iter().map(|p| *p + lift * p.w).collect()
+    })
 }
 
 fn depth_bias(s: &RasterState, kind: Kind) -> DepthBias {

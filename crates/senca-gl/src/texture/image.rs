@@ -179,24 +179,27 @@ impl TexImage {
         }
         let (base, format) = (self.format.base(), sink.layout().format());
         let width = self.width as usize;
+        // Unlike of pixels that are read, the luminance of a texture is its red.
+        let luminance = matches!(format, PixelFormat::Luminance | PixelFormat::LuminanceAlpha);
+        let plain = matches!(base, BaseFormat::Rgba | BaseFormat::Rgb) && !luminance;
         for z in 0..self.depth as usize {
             sink.each_row(z, 0..self.height as usize, |y, mut row| {
                 let run = self.index(0, y, z)..self.index(0, y, z) + width;
                 match &*self.texels {
-                    Texels::Rgba8(colors) if matches!(base, BaseFormat::Rgba | BaseFormat::Rgb) => {
+                    Texels::Rgba8(colors) if plain => {
                         row.put_colors8(0, &colors[run]);
                     }
                     Texels::Rgba8(colors) => {
                         for (i, colors) in colors[run].chunks(BATCH).enumerate() {
                             let mut batch = [[0; 4]; BATCH];
-                            returned(base, colors, &mut batch, 255);
+                            returned(base, luminance, colors, &mut batch, 255);
                             row.put_colors8(i * BATCH, &batch[..colors.len()]);
                         }
                     }
                     Texels::Rgba32F(colors) => {
                         for (i, colors) in colors[run].chunks(BATCH).enumerate() {
                             let mut batch = [[0.0; 4]; BATCH];
-                            returned(base, colors, &mut batch, 1.0);
+                            returned(base, luminance, colors, &mut batch, 1.0);
                             row.put_colors(i * BATCH, &batch[..colors.len()]);
                         }
                     }
@@ -214,9 +217,19 @@ impl TexImage {
     }
 }
 
-fn returned<T: Copy + Default>(base: BaseFormat, colors: &[[T; 4]], out: &mut [[T; 4]], one: T) {
+/// Colours as `GetTexImage` gives them; with `red_only`, without green and blue.
+fn returned<T: Copy + Default>(
+    base: BaseFormat,
+    red_only: bool,
+    colors: &[[T; 4]],
+    out: &mut [[T; 4]],
+    one: T,
+) {
     for (out, color) in out.iter_mut().zip(colors) {
         *out = base.returned(*color, one);
+        if red_only {
+            *out = [out[0], T::default(), T::default(), out[3]];
+        }
     }
 }
 

@@ -88,10 +88,11 @@ commands! { COMMANDS, c:
         draw_elements(c, mode, count, kind, indices)
     }
     glMultiDrawArrays | glMultiDrawArraysEXT(mode: u32, first: In<i32>, count: In<i32>, draws: i32) {
-        if draws < 0 {
+        let (first, count) = (first.values(draws), count.values(draws));
+        if draws < 0 || count.iter().flatten().any(|n| *n < 0) {
             return c.raise(gl::INVALID_VALUE);
         }
-        if let (Some(first), Some(count)) = (first.values(draws), count.values(draws)) {
+        if let (Some(first), Some(count)) = (first, count) {
             for (first, count) in first.into_iter().zip(count) {
                 c.draw_arrays(mode, first, count);
             }
@@ -100,10 +101,11 @@ commands! { COMMANDS, c:
     glMultiDrawElements | glMultiDrawElementsEXT(
         mode: u32, count: In<i32>, kind: u32, indices: In<Pointer>, draws: i32
     ) {
-        if draws < 0 {
+        let (count, indices) = (count.values(draws), indices.values(draws));
+        if draws < 0 || count.iter().flatten().any(|n| *n < 0) {
             return c.raise(gl::INVALID_VALUE);
         }
-        if let (Some(count), Some(indices)) = (count.values(draws), indices.values(draws)) {
+        if let (Some(count), Some(indices)) = (count, indices) {
             for (count, indices) in count.into_iter().zip(indices) {
                 draw_elements(c, mode, count, kind, indices);
             }

@@ -54,8 +54,11 @@ fn log(
     count
 }
 
-fn label(c: &Current, kind: u32, name: usize, size: i32, length: Out<i32>, out: Out<u8>) {
-    let label = c.get_object_label(kind, name);
+fn label(c: &mut Current, kind: u32, name: u32, size: i32, length: Out<i32>, out: Out<u8>) {
+    if size < 0 {
+        return c.raise(gl::INVALID_VALUE);
+    }
+    let Some(label) = c.get_object_label(kind, name) else { return };
     let written = if out.is_null() { label.len() } else { out.write_text(label, size) };
     length.put(written as i32);
 }
@@ -87,15 +90,14 @@ commands! { COMMANDS, c:
     }
     glPopDebugGroup() { c.pop_debug_group() }
     glObjectLabel(kind: u32, name: u32, length: i32, text: In<u8>) {
-        c.object_label(kind, name as usize, &text.text(length).unwrap_or_default())
+        c.object_label(kind, name, &text.text(length).unwrap_or_default())
     }
-    glObjectPtrLabel(pointer: Pointer, length: i32, text: In<u8>) {
-        c.object_label(0, pointer.address(), &text.text(length).unwrap_or_default())
-    }
+    // Pointers name sync objects, of which there are none.
+    glObjectPtrLabel(_pointer: Pointer, _length: i32, _text: In<u8>) { c.raise(gl::INVALID_VALUE) }
     glGetObjectLabel(kind: u32, name: u32, size: i32, length: Out<i32>, text: Out<u8>) {
-        label(c, kind, name as usize, size, length, text)
+        label(c, kind, name, size, length, text)
     }
-    glGetObjectPtrLabel(pointer: Pointer, size: i32, length: Out<i32>, text: Out<u8>) {
-        label(c, 0, pointer.address(), size, length, text)
+    glGetObjectPtrLabel(_pointer: Pointer, _size: i32, _length: Out<i32>, _text: Out<u8>) {
+        c.raise(gl::INVALID_VALUE)
     }
 }

@@ -35,7 +35,7 @@ fn booleans(c: &mut Current, name: u32, out: Out<u8>) {
 
 /// Rows of a bit pattern of 32 x 32 as the program wants them.
 fn polygon_stipple(c: &mut Current, mut out: Out<u8>) {
-    let (rows, store) = (c.polygon_stipple_rows(), c.pack_store());
+    let (Some(rows), store) = (c.get_polygon_stipple(), c.pack_store()) else { return };
     let size = [32, 32, 1];
     let Some(span) = store.span(PixelLayout::BITMAP, size, false) else { return };
     let Some(bytes) = out.bytes(span.bytes) else { return };

@@ -12,6 +12,11 @@ fn values<T: Component + Plain>(name: u32, v: In<T>) -> Few<f64> {
     v.values(count).unwrap_or_default().into_iter().map(number).collect()
 }
 
+/// A parameter given as a number.
+fn single<T: Component>(name: u32, v: T) -> Few<f64> {
+    one(name, v).into_iter().map(f64::from).collect()
+}
+
 /// A colour fills the range of the integers.
 fn integers(name: u32, v: &[f64]) -> Few<i32> {
     let number = |v: f64| match name {
@@ -67,8 +72,8 @@ commands! { COMMANDS, c:
         resident(c, n, names)
     }
 
-    glTexParameterf(target: u32, name: u32, v: f32) { c.tex_parameter(target, name, &one(v).map(f64::from)) }
-    glTexParameteri(target: u32, name: u32, v: i32) { c.tex_parameter(target, name, &[f64::from(v)]) }
+    glTexParameterf(target: u32, name: u32, v: f32) { c.tex_parameter(target, name, &single(name, v)) }
+    glTexParameteri(target: u32, name: u32, v: i32) { c.tex_parameter(target, name, &single(name, v)) }
     glTexParameterfv(target: u32, name: u32, v: In<f32>) { c.tex_parameter(target, name, &values(name, v)) }
     glTexParameteriv(target: u32, name: u32, v: In<i32>) { c.tex_parameter(target, name, &values(name, v)) }
     glGetTexParameterfv(target: u32, name: u32, out: Out<f32>) {
