@@ -2,6 +2,7 @@
 
 mod bake;
 mod bench;
+mod compare;
 mod convert;
 mod form_factor;
 mod info;
@@ -29,6 +30,8 @@ enum Command {
     Info(info::Arguments),
     /// Writes a model, or a picture, in another format
     Convert(convert::Arguments),
+    /// Tells how far a picture is from another one
+    Compare(compare::Arguments),
     /// Prints the partial matrices of a viewing operation and their product
     ViewMatrix(view_matrix::Arguments),
     /// Bakes the light of a scene into a model that other programs show
@@ -47,6 +50,7 @@ pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::ViewMatrix(arguments) => view_matrix::run(&arguments),
         Command::Bake(arguments) => bake::run(&arguments),
         Command::Lux(arguments) => lux::run(&arguments),
