@@ -122,7 +122,7 @@ impl DirectLight {
             if placed.color.max_component() <= 0.0 {
                 continue;
             }
-            if let LightKind::Area { size } = placed.kind {
+            if let LightKind::Area { size, .. } = placed.kind {
                 light.rectangles.extend(Rectangle::new(
                     size,
                     &world_from_light,

@@ -23,9 +23,13 @@ use rayon::prelude::*;
 use senca_math::glam::DVec3;
 use senca_math::{Cancelled, Control, LinearRgb};
 
+use crate::direct::cosine_direction;
 use crate::{DirectLight, ElementMesh, Occluders, RadiosityError, Solution};
 use cache::ReflectedGather;
 use direct::DirectGather;
+
+/// Directions above a place, and as many below, that tell whether it is in a body.
+const LOOKS: u32 = 16;
 
 /// How light is gathered at single places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,6 +144,22 @@ impl<'a> Gather<'a> {
         let place = self.direct.blockers().clear_of(place, normal);
         let reflected = gather_reflected(self.solution, self.occluders, place, normal, rays, key);
         self.direct.at(place, normal, key) + reflected
+    }
+
+    /// Whether a place is in a body: whatever direction one looks in there is a surface, and what there is
+    /// to be seen of it is its back, or all is dark. `light` is what arrives there.
+    #[must_use]
+    pub fn is_inside(&self, place: DVec3, light: LinearRgb) -> bool {
+        let (mut backs, mut all) = (0, 0);
+        for i in 0..LOOKS {
+            let d = cosine_direction(i, LOOKS);
+            for direction in [DVec3::new(d.x, d.z, d.y), DVec3::new(d.x, -d.z, d.y)] {
+                let Some(hit) = self.occluders.closest(place, direction) else { return false };
+                backs += u32::from(!hit.front);
+                all += 1;
+            }
+        }
+        2 * backs >= all || light == LinearRgb::BLACK
     }
 }
 

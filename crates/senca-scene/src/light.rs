@@ -41,6 +41,9 @@ pub enum LightKind {
     Area {
         /// Edge lengths along x and y, each > 0.
         size: [f64; 2],
+        /// Whether the rectangle itself is seen, from the side it shines to, and mirrored. It lights the
+        /// same in either case.
+        visible: bool,
     },
 }
 

@@ -529,7 +529,7 @@ fn check_light(what: &str, light: &Light) -> Check {
                 value("upper limit", max[i], min[i].is_finite() && max[i] > min[i], "above the lower limit")
             })
         }
-        LightKind::Area { size } => size.iter().try_for_each(|&s| value("size", s, s > 0.0, "above 0")),
+        LightKind::Area { size, .. } => size.iter().try_for_each(|&s| value("size", s, s > 0.0, "above 0")),
     }
 }
 

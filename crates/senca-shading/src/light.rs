@@ -86,7 +86,7 @@ impl ShadingLight {
                 let lamp = Lamp::Box { light_from_world, min: f(min), max: f(max), depth: depth as f32 };
                 add(one(light.color, position, axis, lamp));
             }
-            (LightKind::Area { size }, Some(axis)) => {
+            (LightKind::Area { size, .. }, Some(axis)) => {
                 let color = light.color * (AREA_SAMPLES_PER_SIDE.pow(2) as f32).recip();
                 for sample in area_samples(size) {
                     add(one(color, world_from_light.transform_point3(sample), axis, Lamp::Patch));
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn area_light_is_nine_patches_of_a_ninth() {
-        let lights = resolve(LightKind::Area { size: [3.0, 6.0] }, DMat4::IDENTITY);
+        let lights = resolve(LightKind::Area { size: [3.0, 6.0], visible: true }, DMat4::IDENTITY);
         assert_eq!(lights.len(), 9);
         assert_eq!(lights[0].position, Vec3::new(-1.0, -2.0, 0.0));
         assert_eq!(lights[8].position, Vec3::new(1.0, 2.0, 0.0));

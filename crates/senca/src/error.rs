@@ -25,6 +25,17 @@ pub enum Error {
         /// The animations there are.
         known: Vec<String>,
     },
+    /// The scene has no object of that name, or none with a flat face as asked for.
+    #[error(
+        "there is no object \"{name}\" with a flat face that looks as asked; {}",
+        listed("object", known)
+    )]
+    UnknownObject {
+        /// What was asked for.
+        name: String,
+        /// The objects there are.
+        known: Vec<String>,
+    },
     /// The camera gives no view.
     #[error("the camera gives no view: {0}")]
     View(#[from] ViewError),
@@ -95,7 +106,7 @@ impl Error {
     pub fn is_usage(&self) -> bool {
         use RenderError::{Crop, EmptyImage, ImageTooLarge, Setting};
         match self {
-            Self::UnknownCamera { .. } | Self::UnknownAnimation { .. } => true,
+            Self::UnknownCamera { .. } | Self::UnknownAnimation { .. } | Self::UnknownObject { .. } => true,
             Self::View(_) | Self::Partial(_) | Self::SavedLight(_) => false,
             Self::Radiosity(error) => {
                 matches!(error, RadiosityError::Setting { .. } | RadiosityError::TooManyElements { .. })

@@ -19,6 +19,7 @@
 
 mod error;
 mod false_color;
+mod lamps;
 mod lighting;
 mod line_drawing;
 mod prepare;
@@ -30,8 +31,8 @@ mod traced;
 pub use error::Error;
 pub use false_color::false_color;
 pub use lighting::{
-    ComputedLight, Display, OnRound, RadiositySettings, Show, Solver, bake_light, compute_light, measure_lux,
-    scene_light_fingerprint, show_light,
+    Baking, ColorEncoding, ComputedLight, Display, LuxPlaces, OnRound, RadiositySettings, Show, Solver,
+    bake_light, beyond_white, compute_light, measure_lux, scene_light_fingerprint, show_light,
 };
 pub use line_drawing::render_svg;
 pub use prepare::{Prepared, prepare};

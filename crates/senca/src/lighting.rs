@@ -1,5 +1,6 @@
 //! Pictures by radiosity: light computed once, shown from anywhere.
 
+mod face;
 mod measure;
 mod settings;
 mod show;
@@ -7,7 +8,8 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
-pub use measure::{bake_light, measure_lux};
+pub use face::LuxPlaces;
+pub use measure::{Baking, ColorEncoding, bake_light, beyond_white, measure_lux};
 pub use settings::{Display, RadiositySettings, Show, Solver};
 pub use show::show_light;
 pub use solve::{ComputedLight, OnRound, compute_light, scene_light_fingerprint};

@@ -5,11 +5,13 @@ use std::borrow::Cow;
 
 use senca_math::glam::DVec3;
 use senca_math::{View, ViewError, world_from_look_at};
+use senca_pipeline::Channel;
 use senca_scene::{
     AnimationId, Background, Camera, DEFAULT_YFOV, MaterialId, PlacedCamera, Projection, Scene, Shape,
     frame_bounds,
 };
 
+use crate::lamps::{bounds_of_lamps, show_lamps};
 use crate::traced::{CameraOptics, optics_of};
 use crate::{Error, LookAt, Method, Moment, Settings, Viewpoint};
 
@@ -45,17 +47,32 @@ pub fn prepare<'s>(scene: Cow<'s, Scene>, settings: &Settings) -> Result<Prepare
         (None, _, None) => scene.frame_all(aspect),
         (None, _, yfov) => camera_of_caller(&scene, &LookAt::default(), yfov, aspect)?,
     };
-    let view = placed.camera.view(&placed.world_from_camera, aspect, &scene.bounds())?;
+    let bounds = scene.bounds().union(bounds_of_lamps(&scene));
+    let view = placed.camera.view(&placed.world_from_camera, aspect, &bounds)?;
     if !is_lit(&scene, settings.method) {
         scene.to_mut().light_by_default(&placed.world_from_camera);
+    }
+    if shows_lamps(settings) && !bounds_of_lamps(&scene).is_empty() {
+        show_lamps(scene.to_mut(), &view);
     }
     Ok(Prepared { scene, view, size, camera: optics_of(&placed.camera) })
 }
 
-/// Whether the scene has light for the method. Paths also find what comes from glowing surfaces and from
-/// any background, by which nothing else is lit.
+/// Whether area lights become shining surfaces. Paths meet them as they are, radiosity shows them when
+/// light is computed, and lines and numbers have no light.
+fn shows_lamps(settings: &Settings) -> bool {
+    let lit = !settings.drawing.shading.is_lines() && settings.drawing.channel == Channel::Color;
+    match settings.method {
+        Method::Raster => lit,
+        Method::Trace => true,
+        Method::Path | Method::Radiosity => false,
+    }
+}
+
+/// Whether the scene has light for the method. Paths and radiosity also know what comes from glowing
+/// surfaces and from any background, by which nothing else is lit.
 fn is_lit(scene: &Scene, method: Method) -> bool {
-    let spreads = method == Method::Path;
+    let spreads = matches!(method, Method::Path | Method::Radiosity);
     scene.is_lit() || spreads && (shines(scene.background) || glows(scene))
 }
 

@@ -98,7 +98,8 @@ fn light_kind(table: &mut Table<'_>, kind: Kind) -> Result<LightKind> {
             } else {
                 [value.positive()?; 2]
             };
-            LightKind::Area { size }
+            let visible = table.read_or("visible", true, Value::boolean)?;
+            LightKind::Area { size, visible }
         }
     })
 }

@@ -44,7 +44,7 @@ fn every_kind_of_lamp_of_intensity_1_makes_white_show_1() {
     let quads = [rectangle([-0.001, 0.001], 0.0, [-0.001, 0.001])];
     let spots = [SpotFalloff::Sharp { angle: 0.5 }, SpotFalloff::Cosine { exponent: 5.0 }];
     let prism = LightKind::BoxSpot { min: [-1.0; 2], max: [1.0; 2], depth: 3.0 };
-    let small = LightKind::Area { size: [1e-3, 1e-3] };
+    let small = LightKind::Area { size: [1e-3, 1e-3], visible: true };
     let kinds = [LightKind::Point, LightKind::Parallel, prism, small].into_iter();
     for kind in kinds.chain(spots.map(LightKind::Spot)) {
         let scene = lit_by(kind, Attenuation::None);
@@ -87,7 +87,10 @@ fn half_an_element_in_shadow_is_half_as_bright() {
 fn an_area_light_is_the_form_factor_it_has() {
     // Unit square 1 below a unit square, middle: 0.2394564705 of what the lamp gives off, which is
     // pi color / area over pi.
-    let mut scene = lit_by(LightKind::Area { size: [1.0, 1.0] }, Attenuation::InverseSquare { range: None });
+    let mut scene = lit_by(
+        LightKind::Area { size: [1.0, 1.0], visible: true },
+        Attenuation::InverseSquare { range: None },
+    );
     let lamp = DMat4::from_translation(DVec3::Y) * DMat4::from_rotation_x(-FRAC_PI_2);
     scene.nodes[0].transform = Transform::Matrix(lamp);
     let quads = [rectangle([-0.5, 0.5], 0.0, [-0.5, 0.5])];
@@ -101,7 +104,10 @@ fn an_area_light_is_the_form_factor_it_has() {
 
 #[test]
 fn plain_area_lights_can_be_emitters_instead() {
-    let plain = lit_by(LightKind::Area { size: [2.0, 0.5] }, Attenuation::InverseSquare { range: None });
+    let plain = lit_by(
+        LightKind::Area { size: [2.0, 0.5], visible: true },
+        Attenuation::InverseSquare { range: None },
+    );
     let mut light = light_of(&plain);
     let areas = light.take_plain_areas();
     assert!(light.is_empty());
@@ -109,7 +115,7 @@ fn plain_area_lights_can_be_emitters_instead() {
     let (normal, area) = shape.normal_and_area();
     assert!(normal.distance(DVec3::NEG_Y) < 1e-12 && (area - 1.0).abs() < 1e-12);
     assert!((shows.r - std::f32::consts::PI).abs() < 1e-6);
-    let even = lit_by(LightKind::Area { size: [2.0, 0.5] }, Attenuation::None);
+    let even = lit_by(LightKind::Area { size: [2.0, 0.5], visible: true }, Attenuation::None);
     let mut light = light_of(&even);
     assert!(light.take_plain_areas().is_empty() && !light.is_empty());
 }

@@ -162,7 +162,7 @@ fn lamps_light_as_emitters_of_their_shape_do() {
     let settings = HierarchySettings { threshold: 2e-4, ..Default::default() };
     // A lamp at the ceiling that looks down: -z of its node is -y of the world.
     let mut scene = Scene::default();
-    let kind = LightKind::Area { size: [0.4, 0.4] };
+    let kind = LightKind::Area { size: [0.4, 0.4], visible: true };
     let light = Light {
         name: String::new(),
         color: LinearRgb::splat(1.0),

@@ -178,7 +178,7 @@ fn numbers_out_of_range_are_found() {
         LightKind::Spot(SpotFalloff::Cosine { exponent: nan }),
         LightKind::Spot(SpotFalloff::Smooth { inner: 0.3, outer: 0.2 }),
         LightKind::BoxSpot { min: [0.0; 2], max: [0.0; 2], depth: 1.0 },
-        LightKind::Area { size: [1.0, 0.0] },
+        LightKind::Area { size: [1.0, 0.0], visible: true },
     ] {
         assert!(error(move |s| s.lights[0].kind = kind).contains("light 0"));
     }

@@ -51,6 +51,8 @@ pub(super) struct Rectangle {
     pub(super) area: f64,
     /// pi color / area.
     pub(super) radiance: LinearRgb,
+    /// Whether rays meet it.
+    pub(super) visible: bool,
     attenuation: Attenuation,
 }
 
@@ -72,7 +74,7 @@ impl Rectangle {
         let corner = middle - 0.5 * (edges[0] + edges[1]);
         let usable = area.is_finite() && corner.is_finite();
         let radiance = color * (PI / area) as f32;
-        usable.then_some(Self { corner, edges, normal, area, radiance, attenuation })
+        usable.then_some(Self { corner, edges, normal, area, radiance, visible: true, attenuation })
     }
 
     pub(super) fn middle(&self) -> DVec3 {

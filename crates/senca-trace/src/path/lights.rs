@@ -31,7 +31,7 @@ pub(super) struct Lights<'s> {
     fixed: Option<Distribution>,
     /// Of each object, the source that it is.
     of_object: Vec<Option<u32>>,
-    /// Sources that are rectangles.
+    /// Sources that are rectangles which rays meet.
     rectangles: Vec<u32>,
     /// The source that is the sky.
     of_sky: Option<u32>,
@@ -85,7 +85,7 @@ impl<'s> Lights<'s> {
             sky: Sky::new(scene),
         };
         for (i, source) in lights.sources.iter().enumerate() {
-            if matches!(source, Source::Rectangle(_)) {
+            if matches!(source, Source::Rectangle(rectangle) if rectangle.visible) {
                 lights.rectangles.push(i as u32);
             }
         }
@@ -181,7 +181,8 @@ impl<'s> Lights<'s> {
             Source::Rectangle(rectangle) => {
                 let place = rectangle.sample(point, u)?;
                 let radiance = rectangle.seen(place.distance);
-                Some(arriving(place.direction, place.distance, radiance, place.pdf * chance))
+                let arriving = arriving(place.direction, place.distance, radiance, place.pdf * chance);
+                Some(Arriving { single: !rectangle.visible, ..arriving })
             }
             Source::Glow(glow) => {
                 let shining = glow.sample(world, materials, point, rest, u)?;
@@ -277,9 +278,12 @@ fn placed_lights<'s>(scene: &Scene) -> Vec<Source<'s>> {
         if light.color.max_component() <= 0.0 {
             continue;
         }
-        if let LightKind::Area { size } = light.kind {
+        if let LightKind::Area { size, visible } = light.kind {
             let rectangle = Rectangle::new(size, &world_from_light, light.color, light.attenuation);
-            sources.extend(rectangle.map(Source::Rectangle));
+            sources.extend(rectangle.map(|mut rectangle| {
+                rectangle.visible = visible;
+                Source::Rectangle(rectangle)
+            }));
         } else {
             ShadingLight::resolve(light, &world_from_light, |lamp| sources.push(Source::Lamp(lamp)));
         }

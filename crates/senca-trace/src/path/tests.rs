@@ -253,12 +253,17 @@ fn an_area_light_is_itself_however_it_is_found() {
     let size = [1.5, 1.0];
     add_light(
         &mut scene,
-        LightKind::Area { size },
+        LightKind::Area { size, visible: true },
         Attenuation::InverseSquare { range: None },
         down_from(DVec3::Y),
     );
     let eye = DVec3::new(3.0, 2.0, 1.0);
     let lamp = look_at_origin(&scene, eye, &one_bounce(), 4096);
+    // The same where it is not seen.
+    for light in &mut scene.lights {
+        light.kind = LightKind::Area { size, visible: false };
+    }
+    let hidden = look_at_origin(&scene, eye, &one_bounce(), 4096);
     // The same as a shining polygon.
     let mut scene = floor(1.0);
     let radiance = (std::f64::consts::PI / 1.5) as f32;
@@ -274,7 +279,7 @@ fn an_area_light_is_itself_however_it_is_found() {
     let (sx, sy) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     let factor = 4.0 / std::f64::consts::TAU * (x / sx * (y / sx).atan() + y / sy * (x / sy).atan());
     let expected = factor * f64::from(radiance);
-    for found in [lamp, polygon] {
+    for found in [lamp, hidden, polygon] {
         assert!((found.mean[0] - expected).abs() < 4.0 * found.error[0] + 1e-3, "{found:?}, not {expected}");
         assert!(found.error[0] < 0.01 * expected);
     }

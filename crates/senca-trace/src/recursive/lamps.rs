@@ -70,7 +70,7 @@ fn form_of(kind: LightKind, world_from_light: &DMat4) -> Form {
     match kind {
         LightKind::Parallel => Form::Far(-axis),
         LightKind::BoxSpot { .. } => Form::Plane { place, axis },
-        LightKind::Area { size } => {
+        LightKind::Area { size, .. } => {
             Form::Area(*world_from_light * DMat4::from_scale(DVec3::new(size[0], size[1], 1.0)))
         }
         LightKind::Point | LightKind::Spot(_) | LightKind::Ambient => Form::Place(place),
@@ -176,12 +176,12 @@ mod tests {
         let prism = LightKind::BoxSpot { min: [-1.0; 2], max: [1.0; 2], depth: 9.0 };
         let aside = only(prism).place(0, 0, sampler(), point + DVec3::X).1;
         assert_eq!(aside, ToLight::Place(DVec3::X));
-        assert_eq!(way(LightKind::Area { size: [2.0; 2] }), ToLight::Place(DVec3::ZERO));
+        assert_eq!(way(LightKind::Area { size: [2.0; 2], visible: true }), ToLight::Place(DVec3::ZERO));
     }
 
     #[test]
     fn places_of_an_area_light_lie_in_their_cells() {
-        let light = only(LightKind::Area { size: [2.0, 4.0] });
+        let light = only(LightKind::Area { size: [2.0, 4.0], visible: true });
         assert_eq!((light.places(3), only(LightKind::Point).places(3)), (9, 1));
         assert_eq!(light.name, "lamp");
         for index in 0..9 {

@@ -228,7 +228,10 @@ fn blockers_of(world: &World<'_>, materials: &MaterialTable<'_>, settings: &Recu
     let transparent = used().any(|m| materials.is_transparent(m));
     if blends || (transparent && settings.transparent_shadows) {
         Blockers::Tinting
-    } else if transparent || used().any(|m| materials.has_holes(m)) {
+    } else if transparent
+        || used().any(|m| materials.has_holes(m))
+        || world.objects().iter().any(|object| !object.casts_shadow)
+    {
         Blockers::Some
     } else {
         Blockers::All

@@ -34,6 +34,9 @@ impl Tracer<'_> {
     /// Whether a surface in the way takes all light.
     pub(super) fn blocks(&self, ray: &Ray, hit: &Hit) -> bool {
         let object = &self.world.objects()[hit.object as usize];
+        if !object.casts_shadow {
+            return false;
+        }
         if let &[material] = &object.materials[..] {
             if self.materials.is_transparent(material) {
                 return false;
@@ -68,6 +71,9 @@ impl Tracer<'_> {
 
     /// Share of light that one surface lets through; `inside` is the way since the last one.
     fn let_through(&self, ray: &Ray, hit: &Hit, inside: f64) -> LinearRgb {
+        if !self.world.objects()[hit.object as usize].casts_shadow {
+            return LinearRgb::WHITE;
+        }
         let at = self.world.interaction(ray, hit);
         let material = self.materials.at(&at);
         let around = LinearRgb::splat(1.0 - material.coverage);

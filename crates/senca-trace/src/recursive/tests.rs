@@ -153,7 +153,7 @@ fn seen_from_above(scene: &Scene) -> f32 {
 #[test]
 fn blockers_count_between_the_place_and_the_light_only() {
     let lit = 1.04;
-    for kind in [LightKind::Point, LightKind::Parallel, LightKind::Area { size: [0.1; 2] }] {
+    for kind in [LightKind::Point, LightKind::Parallel, LightKind::Area { size: [0.1; 2], visible: true }] {
         let with_ball = |place: [f64; 3], material: Material| {
             let mut scene = lit_floor(kind);
             add(&mut scene, sphere(0.3), place, material);
@@ -208,7 +208,7 @@ fn attenuation_counts_the_way_to_the_light() {
 
 #[test]
 fn soft_shadows_let_part_of_an_area_light_through() {
-    let mut scene = lit_floor(LightKind::Area { size: [4.0, 4.0] });
+    let mut scene = lit_floor(LightKind::Area { size: [4.0, 4.0], visible: true });
     // Hides the half with x > 0 of the lamp from the middle of the floor.
     let half = Shape::Box { size: DVec3::new(10.0, 0.1, 20.0) };
     add(&mut scene, half, [5.0, 3.0, 0.0], figure_2_11());

@@ -122,9 +122,12 @@ impl<'s> Builder<'s, '_> {
     fn add(&mut self, instance: &Instance, surface: Arc<dyn Intersect + 's>, world_from_object: DMat4) {
         let materials = self.materials(instance);
         let known = |&m: &usize| self.scene.materials.get(m).is_none_or(is_opaque);
-        let opaque = materials.iter().all(known);
-        let object =
+        let casts_shadow = self.scene.nodes[instance.node.index()].light.is_none();
+        // What throws no shadow is asked for.
+        let opaque = casts_shadow && materials.iter().all(known);
+        let mut object =
             Object::new(surface, world_from_object, materials, opaque, instance.node, instance.geometry);
+        object.casts_shadow = casts_shadow;
         self.objects.push(object);
     }
 

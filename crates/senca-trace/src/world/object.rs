@@ -31,6 +31,9 @@ pub struct Object<'s> {
     pub materials: Vec<usize>,
     /// Whether none of the materials lets light pass, neither by transmission nor by alpha.
     pub opaque: bool,
+    /// Whether it throws shadows where rays are followed without chance: not where its node carries a
+    /// light, too, of which it is then the look.
+    pub casts_shadow: bool,
     /// Node that places it.
     pub node: NodeId,
     /// Geometry that it is.
@@ -105,6 +108,7 @@ impl<'s> Object<'s> {
             bounds_world: Aabb::EMPTY,
             materials,
             opaque,
+            casts_shadow: true,
             node,
             geometry,
             placement: placement(&world_from_object),

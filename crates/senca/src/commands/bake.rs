@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, ValueHint};
+use clap::{Args, ValueEnum, ValueHint};
 use senca::io::gltf::{WriteSettings, write_glb};
 use senca::pipeline::Control;
-use senca::{Method, Settings, bake_light};
+use senca::radiosity::Solution;
+use senca::{Baking, ColorEncoding, Method, Settings, bake_light, beyond_white};
 
 use crate::cli::input::read_scene;
 use crate::cli::output::{self, check_writable, tell};
@@ -25,9 +26,15 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: PathBuf,
 
-    /// Bakes a picture of this many texels a side, in place of colours of vertices
+    /// Texels a side of the picture that holds the light [default: what the light asks for]
     #[arg(long, value_name = "SIDE", value_parser = clap::value_parser!(u32).range(16..=16_384))]
     lightmap: Option<u32>,
+
+    /// Bakes colours of vertices in place of a picture: numbers are light, as glTF has it, or srgb for
+    /// programs that take them for that, such as F3D and ParaView
+    #[arg(long, value_enum, value_name = "NUMBERS", num_args = 0..=1, default_missing_value = "linear",
+          conflicts_with = "lightmap")]
+    vertex_colors: Option<EncodingChoice>,
 
     /// Makes all light stronger or weaker: each stop up doubles it, each stop down halves it
     #[arg(long, value_name = "STOPS", value_parser = stops, default_value = "0", allow_hyphen_values = true)]
@@ -49,13 +56,49 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
+/// What numbers stand for colours of vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EncodingChoice {
+    /// Light
+    Linear,
+    /// sRGB
+    Srgb,
+}
+
 const EXAMPLES: &str = "\
 Examples:
   senca bake room.toml -o room.glb
-  senca bake room.toml -o room.glb --lightmap 1024 --exposure 1";
+  senca bake room.toml -o room.glb --lightmap 1024 --exposure 1
+  senca bake room.toml -o room.glb --vertex-colors";
 
 /// Share of the progress bar that computing takes.
 const COMPUTING: f32 = 0.9;
+
+/// Share of the area that may be brighter than white before that is told.
+const BURNT_OUT: f64 = 0.05;
+
+impl Arguments {
+    fn baking(&self) -> Baking {
+        match self.vertex_colors {
+            None => Baking::Lightmap(self.lightmap),
+            Some(EncodingChoice::Linear) => Baking::VertexColors(ColorEncoding::Linear),
+            Some(EncodingChoice::Srgb) => Baking::VertexColors(ColorEncoding::Srgb),
+        }
+    }
+}
+
+/// Says that much of the light is cut off, and what would keep it.
+fn tell_brightness(arguments: &Arguments, solution: &Solution) {
+    let (share, stops) = beyond_white(solution, arguments.exposure.exp2() as f32);
+    if share > BURNT_OUT {
+        tell(&format!(
+            "senca: {}: warning: {:.0} % of the area is brighter than white and cut off; --exposure {:.1} keeps it",
+            arguments.output.display(),
+            100.0 * share,
+            arguments.exposure - stops
+        ));
+    }
+}
 
 /// Bakes the light and writes the model.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -76,13 +119,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let report = |done: f32| progress.report(COMPUTING * done);
     let control = Control { progress: Some(&report), cancel: Some(interrupt.flag()) };
     let light = files.light(name, &scene, &settings, &control, &interrupt, &mut |_| {})?;
-    let baked = bake_light(&scene, &light.solution, &settings, arguments.lightmap)
+    let baked = bake_light(&scene, &light.solution, &settings, arguments.baking())
         .map_err(|error| Failure::of_scene(name, &error))?;
     let mut warnings = Vec::new();
     let bytes = write_glb(&baked, &WriteSettings::default(), &mut warnings)?;
     progress.finish();
     if !arguments.quiet {
         light.tell_warnings(name);
+        tell_brightness(arguments, &light.solution);
     }
     output::write(&arguments.output, &bytes, &interrupt)?;
     for warning in warnings.iter().filter(|_| !arguments.quiet) {

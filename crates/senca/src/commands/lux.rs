@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use senca::io::images::{PictureFormat, PictureOptions, encode};
+use senca::math::glam::DVec3;
 use senca::pipeline::Control;
 use senca::radiosity::false_color::{FalseColors, round_up};
 use senca::radiosity::{LuxGrid, LuxReport};
-use senca::{Method, Settings, measure_lux};
+use senca::{LuxPlaces, Method, Scene, Settings, measure_lux};
 use serde_json::json;
 
 use crate::cli::input::read_scene;
@@ -34,11 +35,29 @@ pub(crate) struct Arguments {
 
     /// Corner of the measured area, as seen from above [default: that of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, requires = "to")]
-    from: Option<senca::math::glam::DVec3>,
+    from: Option<DVec3>,
 
     /// Opposite corner of the measured area
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, requires = "from")]
-    to: Option<senca::math::glam::DVec3>,
+    to: Option<DVec3>,
+
+    /// Measures on the largest flat face of the object of this name, such as a desk or a wall
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["from", "corner"])]
+    object: Option<String>,
+
+    /// Direction that the face of the object looks in [default: any]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, requires = "object")]
+    facing: Option<DVec3>,
+
+    /// Measures on a rectangle anywhere, with this corner
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, requires = "edges",
+          conflicts_with = "from")]
+    corner: Option<DVec3>,
+
+    /// Its edges from there; measured is the side from which the second follows the first counter-clockwise
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, requires = "corner",
+          num_args = 2)]
+    edges: Option<Vec<DVec3>>,
 
     /// Luminance that a shown 1 stands for, in candela per square metre
     #[arg(long, value_name = "CD/M2", value_parser = positive, default_value = "1")]
@@ -84,6 +103,8 @@ const EXAMPLES: &str = "\
 Examples:
   senca lux office.toml
   senca lux office.toml --height 0.85 --spacing 0.25 -o desk.csv --picture desk.png
+  senca lux office.toml --object desk --spacing 0.1 --picture desk.png
+  senca lux office.toml --corner 0,1,0 --edges 3,0,0 0,1.5,0 -o wall.csv
   senca lux hall.glb --luminance-of-one 1000 --from -4,0,-2 --to 4,0,2";
 
 /// Longer side of the picture of the plane, in pixels, without its scale.
@@ -106,17 +127,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let radiosity = arguments.light.settings(0.0);
     let settings = Settings { method: Method::Radiosity, radiosity, ..Settings::default() };
 
-    let mut bounds = scene.bounds();
-    if bounds.is_empty() {
+    if scene.bounds().is_empty() {
         return Err(Failure::input(format!("{}: there is nothing in the scene", name.display())));
     }
-    let height = bounds.min.y + arguments.height;
-    if let Some((from, to)) = arguments.from.zip(arguments.to) {
-        (bounds.min, bounds.max) = (from.min(to), from.max(to));
-    }
-    let size = bounds.size();
-    let spacing = arguments.spacing.unwrap_or(size.x.max(size.z) / PLACES_ALONG);
-    let grid = LuxGrid::horizontal(&bounds, height, spacing).map_err(Failure::usage)?;
+    let plane = arguments.plane(&scene)?;
 
     let progress = Progress::new(arguments.quiet);
     let first = |done: f32| progress.report(0.8 * done);
@@ -124,7 +138,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let control = Control { progress: Some(&first), cancel: Some(interrupt.flag()) };
     let light = files.light(name, &scene, &settings, &control, &interrupt, &mut |_| {})?;
     let control = Control { progress: Some(&second), ..control };
-    let report = measure_lux(&scene, &light.solution, &settings, &grid, arguments.luminance_of_one, &control);
+    let places = match (&plane, &arguments.object) {
+        (Some(grid), _) => Ok(LuxPlaces::from(*grid)),
+        (None, object) => {
+            let object = object.as_deref().unwrap_or_default();
+            LuxPlaces::on_object(&scene, &light.solution, object, arguments.facing, arguments.spacing)
+        }
+    };
+    let places = places.map_err(|error| Failure::of_scene(name, &error))?;
+    let report =
+        measure_lux(&scene, &light.solution, &settings, &places, arguments.luminance_of_one, &control);
     let report = report.map_err(|error| Failure::of_scene(name, &error))?;
     progress.finish();
     if !arguments.quiet {
@@ -146,6 +169,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&summary(&report, arguments.json)?)
 }
 
+impl Arguments {
+    /// The plane that is measured; `None` where it is that of an object.
+    fn plane(&self, scene: &Scene) -> Result<Option<LuxGrid>, Failure> {
+        if self.object.is_some() {
+            return Ok(None);
+        }
+        if let (Some(corner), Some(&[across, along])) = (self.corner, self.edges.as_deref()) {
+            let spacing = self.spacing.unwrap_or(across.length().max(along.length()) / PLACES_ALONG);
+            return LuxGrid::rectangle(corner, [across, along], spacing).map(Some).map_err(Failure::usage);
+        }
+        let mut bounds = scene.bounds();
+        let height = bounds.min.y + self.height;
+        if let Some((from, to)) = self.from.zip(self.to) {
+            (bounds.min, bounds.max) = (from.min(to), from.max(to));
+        }
+        let size = bounds.size();
+        let spacing = self.spacing.unwrap_or(size.x.max(size.z) / PLACES_ALONG);
+        LuxGrid::horizontal(&bounds, height, spacing).map(Some).map_err(Failure::usage)
+    }
+}
+
 fn picture_format(path: &Path) -> Result<PictureFormat, Failure> {
     let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
     PictureFormat::from_extension(&extension)
@@ -157,17 +201,27 @@ fn summary(report: &LuxReport, as_json: bool) -> Result<String, Failure> {
     let [columns, rows] = report.grid.size;
     let (mean, least, most) = (report.mean(), report.least(), report.most());
     let uniformity = report.uniformity();
-    let height = report.grid.origin.y;
+    let (height, left_out) = (report.grid.origin.y, report.left_out());
+    let normal = report.grid.normal.to_array();
     if as_json {
         let value = json!({
-            "columns": columns, "rows": rows, "height": height,
+            "columns": columns, "rows": rows, "height": height, "normal": normal, "left_out": left_out,
             "mean": mean, "least": least, "most": most, "uniformity": uniformity, "unit": "lux",
         });
         let text = serde_json::to_string_pretty(&value).map_err(Failure::input)?;
         return Ok(text + "\n");
     }
+    let place = match normal {
+        [_, 1.0, _] => format!("at y = {height:.3}"),
+        [x, y, z] => format!("looking to {x:.3}, {y:.3}, {z:.3}"),
+    };
+    let without = match left_out {
+        0 => String::new(),
+        1 => ", without 1 that is in a body or beside the face".to_owned(),
+        n => format!(", without {n} that are in bodies or beside the face"),
+    };
     Ok(format!(
-        "{columns} x {rows} places at y = {height:.3}\n\
+        "{columns} x {rows} places {place}{without}\n\
          mean        {mean:>10.3} lux\n\
          least       {least:>10.3} lux\n\
          most        {most:>10.3} lux\n\

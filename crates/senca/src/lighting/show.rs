@@ -21,6 +21,7 @@ use senca_trace::{Film, FilmReport, FilmSettings, PrimaryRays, Watch, World};
 use super::measure::finder_of;
 use super::solve::light_of_lamps;
 use super::{Display, Show};
+use crate::lamps::{bounds_of_lamps, copy_lamps, show_lamps};
 use crate::prepare::{Prepared, prepare};
 use crate::traced::{area, background, on_threads, recursive_settings};
 use crate::{Error, Report, Settings};
@@ -41,6 +42,9 @@ pub fn show_light(
 ) -> Result<(Image, Report), Error> {
     let start = Instant::now();
     let mut prepared = prepare(scene, settings)?;
+    if !bounds_of_lamps(&prepared.scene).is_empty() {
+        show_lamps(prepared.scene.to_mut(), &prepared.view);
+    }
     let factor = settings.radiosity.exposure_factor();
     if factor != 1.0 {
         let scene = prepared.scene.to_mut();
@@ -91,6 +95,7 @@ impl Shot<'_> {
     fn by_pipeline(&self, report: &mut Report) -> Result<Image, Error> {
         let field = LightField::new(&self.solution.mesh, self.incident(), self.interpolation());
         let mut shown = shown_scene(&self.prepared.scene, &field, ShownColors::Exact);
+        copy_lamps(&self.prepared.scene, &mut shown);
         let wish = &self.settings.drawing;
         let background = background(&self.prepared.scene, self.settings);
         shown.background = Background::None;

@@ -271,7 +271,7 @@ fn what_gltf_cannot_hold_is_told() {
         name: "lamp".into(),
         color: LinearRgb::WHITE,
         attenuation: Attenuation::None,
-        kind: LightKind::Area { size: [1.0, 1.0] },
+        kind: LightKind::Area { size: [1.0, 1.0], visible: true },
     });
     let phong = Phong { specular: LinearRgb::WHITE, exponent: 30.0, ..Phong::default() };
     scene.materials.push(Material {

@@ -330,7 +330,7 @@ fn lights_stand_and_shine_where_they_should() {
         LightKind::Spot(SpotFalloff::Smooth { inner: 0.0, outer: FRAC_PI_2 })
     );
     let (area, _) = light("kind = 'area'\ndirection = [0, -1, 0]\nsize = [2, 1]");
-    assert_eq!(area.kind, LightKind::Area { size: [2.0, 1.0] });
+    assert_eq!(area.kind, LightKind::Area { size: [2.0, 1.0], visible: true });
     assert_eq!(light("kind = 'ambient'\ncolor = 0.1").0.kind, LightKind::Ambient);
 }
 
