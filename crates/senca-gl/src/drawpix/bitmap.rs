@@ -5,6 +5,9 @@ use crate::pixel::{PixelLayout, PixelSource, unorm8_from_f32};
 use crate::texture::Texels;
 use crate::{Context, Error, gl};
 
+/// What the transformation of a raster position may lose, in pixels.
+const ROUNDING: f32 = 1e-4;
+
 impl Context {
     /// `glBitmap`: draws the set bits of an image in the colour of the raster position, with the bit at `origin` at
     /// that position; then moves the raster position by `advance` pixels. No bytes: only moves. Bits lie as the
@@ -49,7 +52,8 @@ impl Context {
 
     fn draw_bits(&mut self, source: &PixelSource<'_>, origin: [f32; 2]) {
         let [x, y, ..] = self.state.current.raster.position;
-        let corner = [(x - origin[0]).floor() as i32, (y - origin[1]).floor() as i32];
+        // A raster position that should be a whole number may come out a little less.
+        let corner = [x - origin[0], y - origin[1]].map(|place| (place + ROUNDING).floor() as i32);
         let [width, height, _] = source.size();
         let covered = Area::of([corner[0], corner[1], width as i32, height as i32]);
         let clip = self.scissored(self.draw_area());

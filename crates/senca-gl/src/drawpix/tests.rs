@@ -271,3 +271,11 @@ fn luminance_is_the_sum_and_floats_are_clamped() {
     let red = read(&mut c, [0, 0], [1, 1], gl::RED, gl::FLOAT, 4);
     assert_eq!(red, 1.0f32.to_ne_bytes());
 }
+
+#[test]
+fn a_raster_position_a_little_short_of_a_pixel_counts_as_that_pixel() {
+    let mut c = context(3, 1);
+    c.window_pos([0.999_99, 0.0]);
+    c.bitmap([1, 1], [0.0; 2], [0.0; 2], Some(&[0x80]));
+    assert_eq!(read_red(&mut c, [0, 0], [3, 1]), [0, 255, 0]);
+}

@@ -68,6 +68,9 @@ impl FramebufferObject {
 
     /// `FRAMEBUFFER_COMPLETE`, or what is missing.
     ///
+    /// A draw or read buffer that names a point without an image is no fault, as later versions have it
+    /// (ARB_ES2_compatibility): nothing is drawn to it, and reading from it is an error of its own.
+    ///
     /// Source: ARB_framebuffer_object, section 4.4.4.2.
     pub(crate) fn status(&self) -> Enum {
         let mut samples = None;

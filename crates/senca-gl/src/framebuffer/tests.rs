@@ -242,10 +242,12 @@ fn completeness_says_what_is_missing() {
     c.framebuffer_renderbuffer(gl::FRAMEBUFFER, gl::DEPTH_ATTACHMENT, gl::RENDERBUFFER, depth);
     assert_eq!(status(&mut c), gl::FRAMEBUFFER_INCOMPLETE_ATTACHMENT);
     c.renderbuffer_storage(gl::RENDERBUFFER, gl::DEPTH_COMPONENT24, [2, 2]);
+    // Colours are drawn to and read from nowhere.
     assert_eq!(status(&mut c), gl::FRAMEBUFFER_COMPLETE);
-    c.draw_buffer(gl::NONE);
-    c.read_buffer(gl::NONE);
-    assert_eq!(status(&mut c), gl::FRAMEBUFFER_COMPLETE);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    assert_eq!(c.get_error(), gl::NO_ERROR);
+    c.read_pixels([0, 0], [1, 1], gl::RGBA, gl::UNSIGNED_BYTE, &mut [0; 4]);
+    assert_eq!(c.get_error(), gl::INVALID_OPERATION);
     c.framebuffer_renderbuffer(gl::FRAMEBUFFER, gl::COLOR_ATTACHMENT1, gl::RENDERBUFFER, depth);
     assert_eq!(status(&mut c), gl::FRAMEBUFFER_INCOMPLETE_ATTACHMENT);
 
@@ -499,4 +501,26 @@ fn without_multisampling_pixels_are_whole() {
     let found = resolved_triangle(false);
     assert!(found.iter().all(|red| matches!(red, 0 | 255)));
     assert!(found.iter().filter(|red| **red == 255).count() >= 28);
+}
+
+#[test]
+fn a_texture_is_depth_and_stencil_at_once() {
+    let mut c = context(2, 2);
+    let texture = c.gen_textures(1)[0];
+    c.bind_texture(gl::TEXTURE_2D, texture);
+    let (format, ty) = (gl::DEPTH_STENCIL, gl::UNSIGNED_INT_24_8);
+    c.tex_image_2d(gl::TEXTURE_2D, 0, gl::DEPTH_STENCIL as i32, [2, 2], 0, format, ty, None);
+    let name = c.gen_framebuffers(1)[0];
+    c.bind_framebuffer(gl::FRAMEBUFFER, name);
+    let point = gl::DEPTH_STENCIL_ATTACHMENT;
+    c.framebuffer_texture_2d(gl::DRAW_FRAMEBUFFER, point, gl::TEXTURE_2D, texture, 0);
+    for point in [gl::DEPTH_ATTACHMENT, gl::STENCIL_ATTACHMENT, gl::DEPTH_STENCIL_ATTACHMENT] {
+        let mut ask = |name| c.get_framebuffer_attachment_parameter(gl::FRAMEBUFFER, point, name);
+        assert_eq!(ask(gl::FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE), gl::TEXTURE as i32);
+        assert_eq!(ask(gl::FRAMEBUFFER_ATTACHMENT_OBJECT_NAME), texture as i32);
+    }
+    c.clear_depth(0.5);
+    c.clear_stencil(7);
+    c.clear(gl::DEPTH_BUFFER_BIT | gl::STENCIL_BUFFER_BIT);
+    assert_eq!((depths(&mut c, [2, 2]), stencils(&mut c, [2, 2])), (vec![0.5; 4], vec![7; 4]));
 }

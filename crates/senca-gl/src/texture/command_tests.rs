@@ -129,7 +129,10 @@ fn proxies_tell_what_would_be() {
     assert_eq!(ask(&mut c, [1 << 20, 32], gl::RGBA8), (0, gl::NO_ERROR));
     assert_eq!(ask(&mut c, [8192, 8192], gl::RGBA8), (8192, gl::NO_ERROR));
     assert_eq!(ask(&mut c, [8192, 8193], gl::RGBA8), (0, gl::NO_ERROR));
-    assert_eq!(ask(&mut c, [-1, 1], gl::RGBA8), (0, gl::INVALID_VALUE));
+    // What is wrong but for its size is an error, and changes nothing.
+    assert_eq!(ask(&mut c, [8, 8], gl::RGBA8), (8, gl::NO_ERROR));
+    assert_eq!(ask(&mut c, [-1, 1], gl::RGBA8), (8, gl::INVALID_VALUE));
+    assert_eq!(ask(&mut c, [4, 4], gl::TEXTURE_2D), (8, gl::INVALID_VALUE));
     // A proxy is no texture.
     assert_eq!(level(&mut c, gl::TEXTURE_2D, 0, gl::TEXTURE_WIDTH), 0);
     c.get_tex_image(p, 0, gl::RGBA, gl::UNSIGNED_BYTE, &mut []);

@@ -26,6 +26,18 @@ pub(crate) enum BaseFormat {
 }
 
 impl BaseFormat {
+    /// Token of a format of colours.
+    fn color_token(self) -> u32 {
+        match self {
+            Self::Alpha => gl::ALPHA,
+            Self::Luminance => gl::LUMINANCE,
+            Self::LuminanceAlpha => gl::LUMINANCE_ALPHA,
+            Self::Intensity => gl::INTENSITY,
+            Self::Rgb => gl::RGB,
+            _ => gl::RGBA,
+        }
+    }
+
     /// Whether texels are colours.
     pub(crate) fn is_color(self) -> bool {
         !self.has_depth() && self != Self::Stencil
@@ -131,8 +143,11 @@ const UNCOMPRESSED: [(u32, u32); 10] = [
 impl InternalFormat {
     /// Format of a token, or of the number of components 1 to 4, as texture images take it; `None` for others.
     pub(crate) fn for_texture(asked: u32) -> Option<Self> {
-        let token = UNCOMPRESSED.iter().find(|pair| pair.0 == asked).map_or(asked, |pair| pair.1);
-        Self::color(token).or_else(|| Self::with_depth(token))
+        let Some((_, token)) = UNCOMPRESSED.iter().find(|pair| pair.0 == asked) else {
+            return Self::color(asked).or_else(|| Self::with_depth(asked));
+        };
+        // Told is the base format, also where texels are sRGB.
+        Self::color(*token).map(|format| Self { token: format.base.color_token(), ..format })
     }
 
     /// Format of a token as renderbuffers take it: colours that can be drawn to, depths and stencil values.

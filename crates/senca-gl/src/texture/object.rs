@@ -310,7 +310,7 @@ impl Texture {
             let wanted = level_size(fine, level - base);
             self.image(face, level).is_some_and(|image| {
                 image.size() == wanted
-                    && image.format.token() == fine.format.token()
+                    && image.format == fine.format
                     && image.border == fine.border
                     && image.is_present()
             })
@@ -336,7 +336,7 @@ impl Texture {
             && (1..self.faces.len()).all(|face| {
                 self.image(face, base).is_some_and(|image| {
                     image.size() == first.size()
-                        && image.format.token() == first.format.token()
+                        && image.format == first.format
                         && image.border == first.border
                         && image.is_present()
                 })

@@ -137,6 +137,8 @@ fn formats_tell_their_bits() {
     assert_eq!(format(gl::RGB).bits(gl::TEXTURE_WIDTH), None);
     // Compressed formats stand for their uncompressed ones.
     assert_eq!(format(gl::COMPRESSED_RGBA).token(), gl::RGBA);
+    assert_eq!(format(gl::COMPRESSED_SRGB).token(), gl::RGB);
+    assert!(format(gl::COMPRESSED_SRGB).is_srgb());
     assert_eq!(format(4).token(), 4);
 }
 
@@ -174,6 +176,7 @@ fn get_returns_components_by_base_format() {
     assert_eq!(given(gl::ALPHA, gl::RGBA), [0, 0, 0, 40]);
     assert_eq!(given(gl::RGB, gl::BGRA), [30, 20, 10, 255]);
     assert_eq!(given(gl::RGBA, gl::LUMINANCE), [10]);
+    assert_eq!(given(gl::RGB16, gl::LUMINANCE_ALPHA), [10, 255]);
     assert_eq!(given(gl::RGBA16, gl::RGBA), [10, 20, 30, 40]);
     assert_eq!(given(gl::LUMINANCE16, gl::RGBA), [10, 0, 0, 255]);
 }

@@ -38,7 +38,7 @@ pub(super) struct Checked {
 pub(super) type Proxy = Checked;
 
 impl Definition {
-    /// Checks all but the target and the pixels; `max` is the largest side of level 0.
+    /// Checks all but the target, the pixels and whether the image is too large.
     fn check(&self, target: TexTarget, face: usize) -> Result<Checked, Error> {
         let max = target.max_size();
         let level = u32::try_from(self.level).map_err(|_| Error::InvalidValue)?;
@@ -50,8 +50,7 @@ impl Definition {
             return Err(Error::InvalidValue);
         }
         for &side in &self.size[..self.dimensions] {
-            let inner = side.checked_sub(2 * self.border).filter(|inner| *inner >= 0);
-            if inner.is_none_or(|inner| inner as u32 > max >> level) {
+            if side.checked_sub(2 * self.border).is_none_or(|inner| inner < 0) {
                 return Err(Error::InvalidValue);
             }
         }
@@ -72,7 +71,8 @@ impl Definition {
 
     pub(super) fn check_image(&self) -> Result<Checked, Error> {
         let (target, face) = self.image_target()?;
-        self.check(target, face)
+        let checked = self.check(target, face)?;
+        if checked.is_too_large() { Err(Error::InvalidValue) } else { Ok(checked) }
     }
 }
 
@@ -84,11 +84,17 @@ pub(super) fn image_target(dimensions: usize, token: Enum) -> Result<(TexTarget,
 
 impl Checked {
     fn texels(&self) -> u64 {
-        self.size.iter().map(|&side| u64::from(side)).product()
+        self.size.iter().fold(1, |texels: u64, &side| texels.saturating_mul(u64::from(side)))
+    }
+
+    /// Whether a side is longer than its level may have.
+    fn is_too_large(&self) -> bool {
+        let most = (self.target.max_size() >> self.level) + 2 * self.border;
+        self.size[..self.target.dimensions()].iter().any(|side| *side > most)
     }
 
     fn fits_memory(&self) -> bool {
-        self.texels() * self.format.storage().texel_bytes() as u64 <= MAX_IMAGE_BYTES as u64
+        self.texels().saturating_mul(self.format.storage().texel_bytes() as u64) <= MAX_IMAGE_BYTES as u64
     }
 
     /// The old image if it has the same shape and nobody else holds on to it, else a new one.
@@ -301,19 +307,14 @@ impl Context {
         if target.dimensions() != definition.dimensions {
             return Err(Error::InvalidEnum);
         }
-        let level = u32::try_from(definition.level).map_err(|_| Error::InvalidValue)?;
-        if level >= levels_of(target.max_size()) || definition.size.iter().any(|side| *side < 0) {
-            return Err(Error::InvalidValue);
-        }
         let layout = PixelLayout::new(format, ty)?;
-        let checked = definition.check(target, 0);
-        if let Ok(checked) = &checked {
-            TexImage::check_pixels(checked.format.base(), layout)?;
-        }
-        // An image that is not to be had has no size; that is no error.
-        let images = &mut self.bindings.proxies[target as usize];
-        images.resize((level as usize + 1).max(images.len()), None);
-        images[level as usize] = checked.ok().filter(|checked| checked.fits_memory() && checked.texels() > 0);
+        let checked = definition.check(target, 0)?;
+        TexImage::check_pixels(checked.format.base(), layout)?;
+        // An image that is only too large has no size; that is no error.
+        let fits = !checked.is_too_large() && checked.fits_memory() && checked.texels() > 0;
+        let (images, level) = (&mut self.bindings.proxies[target as usize], checked.level as usize);
+        images.resize((level + 1).max(images.len()), None);
+        images[level] = fits.then_some(checked);
         Ok(())
     }
 
