@@ -34,6 +34,7 @@ pub use flat::{Disc, PlaneSurface, Polygon};
 pub use frustum::Frustum;
 pub use implicit::{Implicit, RootMethod};
 pub use patches::PatchSurface;
+pub(crate) use patches::{BLOCK, RayBlock};
 pub use prism::Prism;
 pub use revolution::Revolution;
 pub use sphere::{Ellipsoid, Sphere};
@@ -97,6 +98,8 @@ pub enum Form {
         /// That of the hole.
         inner: f64,
     },
+    /// One flat piece with four corners, as the triangle at the first of them and its neighbours.
+    Parallelogram(FlatTriangle),
     /// A few flat triangles, by part.
     Triangles(Vec<FlatTriangle>),
     /// Anything else.
@@ -160,6 +163,11 @@ pub trait Intersect: Send + Sync + std::fmt::Debug {
     /// What the surface is, for those who meet it with many rays at once.
     fn form(&self) -> Form {
         Form::Other
+    }
+
+    /// The surface as patches, where it is made of them, for those who meet it with many rays at once.
+    fn patches(&self) -> Option<&PatchSurface> {
+        None
     }
 
     /// How far computed places may be from where rays meet the surface, as a share of the largest

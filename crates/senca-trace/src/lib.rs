@@ -6,6 +6,7 @@ mod counters;
 mod error;
 mod film;
 mod intersect;
+mod lanes;
 mod material;
 mod mesh_surface;
 pub mod path;

@@ -168,6 +168,11 @@ impl<'s> MaterialTable<'s> {
         Some(texture.sample(&[texcoord, DVec2::ZERO]))
     }
 
+    /// The texture that multiplies the base colour.
+    pub(crate) fn base_texture(&self, material: usize) -> Option<&BoundTexture<'s>> {
+        self.entry(material).base.as_ref()
+    }
+
     /// The material where it is the same everywhere, but for a picture that multiplies its base colour;
     /// `None` where it is not, and where light passes.
     pub(crate) fn simple(&self, material: usize) -> Option<(&MaterialPoint, Option<&BoundTexture<'s>>)> {

@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use crate::lanes::{F, LANES, eight};
+use fearless_simd::{Simd, prelude::*};
 use senca_math::color::linear_from_srgb;
 use senca_math::glam::{DMat3, DVec2, Mat3};
 use senca_scene::{ColorSpace, Filter, ImageData, Scene, TextureRef, Wrap};
@@ -80,6 +82,19 @@ impl<'s> BoundTexture<'s> {
         if self.nearest { self.texel(whole(x + 0.5), whole(y + 0.5)) } else { self.bilinear(x, y) }
     }
 
+    /// [`BoundTexture::sample`] at eight coordinates of set 0; `None` where it does more than to take the
+    /// nearest texel there.
+    #[inline(always)]
+    pub(crate) fn sample_eight<S: Simd>(&self, simd: S, [u, v]: [F<S>; 2]) -> Option<[[f32; 4]; LANES]> {
+        if !self.nearest || self.texcoord != 0 || self.uv_transform.is_some() {
+            return None;
+        }
+        let [width, height] = self.size;
+        let x = nearest_eight(simd, u, width).to_array();
+        let y = nearest_eight(simd, v, height).to_array();
+        Some(eight!(lane => self.texel(x[lane] as i64, y[lane] as i64)))
+    }
+
     fn bilinear(&self, x: f64, y: f64) -> [f32; 4] {
         let (i, j) = (whole(x), whole(y));
         let (s, t) = ((x - i as f64) as f32, (y - j as f64) as f32);
@@ -89,7 +104,7 @@ impl<'s> BoundTexture<'s> {
     }
 
     /// The texel in column `x`, row `y`, which may lie outside the picture.
-    #[inline]
+    #[inline(always)]
     fn texel(&self, x: i64, y: i64) -> [f32; 4] {
         let [width, height] = self.size;
         let (x, y) = (wrapped(self.wrap[0], x, width), wrapped(self.wrap[1], y, height));
@@ -112,6 +127,18 @@ fn position(u: f64, n: u32) -> f64 {
     if p.is_nan() { 0.0 } else { p.clamp(-FARTHEST_TEXEL, FARTHEST_TEXEL) }
 }
 
+/// The texels that eight coordinates are in; see [`position`].
+#[inline(always)]
+fn nearest_eight<S: Simd>(simd: S, u: F<S>, n: u32) -> F<S> {
+    let half = F::splat(simd, 0.5);
+    let p = u * F::splat(simd, f64::from(n)) - half;
+    let farthest = F::splat(simd, FARTHEST_TEXEL);
+    let p = p.simd_gt(farthest).select(farthest, p);
+    let p = p.simd_lt(-farthest).select(-farthest, p);
+    let p = p.simd_eq(p).select(p, F::splat(simd, 0.0));
+    (p + half).floor()
+}
+
 /// The largest whole number that is not above `v`, which is within [`FARTHEST_TEXEL`] of 0.
 #[inline]
 fn whole(v: f64) -> i64 {
@@ -120,7 +147,7 @@ fn whole(v: f64) -> i64 {
 }
 
 /// Texel `i` brought into `0..n`.
-#[inline]
+#[inline(always)]
 fn wrapped(wrap: Wrap, i: i64, n: u32) -> usize {
     let n = i64::from(n.max(1));
     (match wrap {
@@ -182,9 +209,28 @@ mod tests {
     fn outside_the_picture_wrapping_decides() {
         let at = |wrap| sampled(&scene(wrap, Filter::Nearest), 1.25, 0.25)[0];
         assert_eq!((at(Wrap::Repeat), at(Wrap::Mirror), at(Wrap::Clamp)), (0.0, 1.0, 1.0));
-        let scene = scene(Wrap::Repeat, Filter::Bilinear);
+        let bilinear = scene(Wrap::Repeat, Filter::Bilinear);
+        let scene = &bilinear;
         for v in [f64::NAN, f64::INFINITY, 1e300, -1e300] {
-            assert!(sampled(&scene, v, v).iter().all(|c| c.is_finite()));
+            assert!(sampled(scene, v, v).iter().all(|c| c.is_finite()));
+        }
+    }
+
+    #[test]
+    fn eight_texels_at_once_are_the_same() {
+        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+            let scene = scene(wrap, Filter::Nearest);
+            let used = TextureRef::new(TextureId(0));
+            let bound = BoundTexture::new(&scene, &used, ColorSpace::Srgb, None, &Decoding::default());
+            let bound = bound.expect("is there");
+            let u = [0.0, 0.49, 0.5, 1.0, -0.25, f64::NAN, 1e300, f64::NEG_INFINITY];
+            let v = [0.75, 0.5, 0.1, -7.3, 1e-17, 0.25, f64::NAN, -0.0];
+            let found = fearless_simd::dispatch!(fearless_simd::Level::new(), simd => {
+                bound.sample_eight(simd, [F::load_array(simd, u), F::load_array(simd, v)])
+            });
+            let alone: [_; LANES] =
+                std::array::from_fn(|k| bound.sample(&[DVec2::new(u[k], v[k]), DVec2::ZERO]));
+            assert_eq!(found, Some(alone));
         }
     }
 }

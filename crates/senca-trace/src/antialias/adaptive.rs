@@ -176,13 +176,20 @@ fn mean(colors: &[Rgba; 4]) -> Rgba {
     std::array::from_fn(|k| 0.25 * (colors[0][k] + colors[1][k] + colors[2][k] + colors[3][k]))
 }
 
-/// Largest difference, over channels, of display brightness.
+/// Largest difference, over channels, of display brightness. The root grows with its argument, so that the
+/// least and the greatest are enough.
 fn difference(colors: &[Rgba; 4]) -> f32 {
     let of_channel = |k: usize| {
-        let values = colors.map(|c| c[k].clamp(0.0, 1.0).sqrt());
-        values.iter().fold(0.0f32, |m, &v| m.max(v)) - values.iter().fold(1.0f32, |m, &v| m.min(v))
+        let most = colors.iter().fold(0.0f32, |m, c| m.max(c[k])).clamp(0.0, 1.0);
+        let least = colors.iter().fold(1.0f32, |m, c| m.min(c[k])).clamp(0.0, 1.0);
+        most.sqrt() - least.sqrt()
     };
     (0..4).map(of_channel).fold(0.0, f32::max)
+}
+
+/// The colour of a pixel whose corners differ too little to look between them.
+pub(crate) fn even_pixel(settings: &AdaptiveSettings, corners: &[Rgba; 4]) -> Option<Rgba> {
+    (settings.cells() == 1 || difference(corners) < settings.threshold).then(|| mean(corners))
 }
 
 #[cfg(test)]

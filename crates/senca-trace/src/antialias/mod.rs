@@ -19,7 +19,7 @@ use senca_math::glam::DVec2;
 use crate::{Sampler, TraceError};
 
 pub use adaptive::AdaptiveSettings;
-pub(crate) use adaptive::{SquareCache, pixel_so_far as adaptive_pixel_so_far};
+pub(crate) use adaptive::{SquareCache, even_pixel, pixel_so_far as adaptive_pixel_so_far};
 use filter::FilterTable;
 pub use filter::PixelFilter;
 

@@ -3,11 +3,14 @@
 use senca_math::Control;
 
 use super::{Area, Bench, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, in_tiles};
-use crate::antialias::{AdaptiveSettings, Antialiasing, SquareCache, adaptive_pixel_so_far};
+use crate::antialias::{AdaptiveSettings, Antialiasing, SquareCache, adaptive_pixel_so_far, even_pixel};
 use crate::{Pattern, Sampler, TraceError};
 
 /// Entries of caches that are kept at once.
 const CACHED: u32 = 1 << 17;
+
+/// The corners of a pixel, from its place.
+const CORNERS: [[u32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 /// Share of the progress that the corners of pixels are.
 const CORNER_SHARE: u32 = 1;
@@ -94,13 +97,26 @@ impl Film {
         let tiles = area.tiles();
         let done = in_tiles::<I, _>(&tiles, progress, |Bench { work, caches, .. }, tile| {
             let before = I::counts(work);
+            if progress.control.is_cancelled() {
+                return None;
+            }
+            // Most pixels are even, and done with; the numbers and places of the others.
             let mut exposures = Vec::with_capacity(tile.pixels());
-            let pixels: Vec<[u32; 2]> = tile.places_in_squares().map(|(x, y)| [x, y]).collect();
-            for pixels in pixels.chunks((CACHED / (cells + 1).pow(2)).max(1) as usize) {
+            let mut uneven: Vec<(usize, [u32; 2])> = Vec::new();
+            for (number, (x, y)) in tile.places_in_squares().enumerate() {
+                let corners = CORNERS.map(|[dx, dy]| corners[grid.index(x + dx, y + dy)]);
+                let found = even_pixel(settings, &corners);
+                if found.is_none() {
+                    uneven.push((number, [x, y]));
+                }
+                exposures.push(Exposure { sum: found.unwrap_or_default(), weight: 1.0, count: 4 });
+            }
+            for uneven in uneven.chunks((CACHED / (cells + 1).pow(2)).max(1) as usize) {
+                let pixels: Vec<[u32; 2]> = uneven.iter().map(|(_, pixel)| *pixel).collect();
                 caches.resize(pixels.len().max(caches.len()), SquareCache::default());
                 for (&[x, y], cache) in pixels.iter().zip(&mut *caches) {
                     cache.begin(cells);
-                    for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    for [dx, dy] in CORNERS {
                         cache.set(dx * cells, dy * cells, corners[grid.index(x + dx, y + dy)]);
                     }
                 }
@@ -108,7 +124,10 @@ impl Film {
                     integrator.sample_many(places, work, colors);
                     (!progress.control.is_cancelled()).then_some(())
                 };
-                exposures.extend(self.divided(settings, pixels, caches, take)?);
+                let divided = self.divided(settings, &pixels, caches, take)?;
+                for ((number, _), exposure) in uneven.iter().zip(divided) {
+                    exposures[*number] = exposure;
+                }
             }
             Some((exposures, I::counts(work).since(&before)))
         })?;

@@ -3,9 +3,9 @@
 use senca_math::glam::{DVec2, DVec3};
 use senca_math::{Aabb, newell_normal};
 
-use super::Form;
 use super::analytic::{Analytic, Chart, disc_chart};
 use super::region::Region;
+use super::{FlatTriangle, Form};
 use crate::textbook::{dropped_coordinate, reduced};
 use crate::{Crossing, Ray, SurfacePoint};
 
@@ -128,6 +128,8 @@ pub struct Polygon {
     corner: DVec3,
     right: DVec3,
     up: DVec3,
+    /// Three corners, where the fourth makes a parallelogram of them.
+    parallelogram: Option<[DVec3; 3]>,
 }
 
 impl Polygon {
@@ -157,7 +159,17 @@ impl Polygon {
             corner: origin + low.x * x_axis + low.y * y_axis,
             right: x_axis * (high.x - low.x),
             up: y_axis * (high.y - low.y),
+            parallelogram: match outline {
+                [a, b, c, d] if holes.is_empty() && *a + *c == *b + *d => Some([*a, *b, *d]),
+                _ => None,
+            },
         })
+    }
+
+    /// Coordinates of the picture at a place of the plane.
+    fn uv(&self, point: DVec3) -> DVec2 {
+        let share = |edge: DVec3| (point - self.corner).dot(edge) / edge.length_squared();
+        DVec2::new(share(self.right), 1.0 - share(self.up))
     }
 }
 
@@ -184,12 +196,20 @@ impl Analytic for Polygon {
     fn surface_point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         let near = ray.at(crossing.t);
         let point = near - self.normal * (self.normal.dot(near) - self.distance);
-        let share = |edge: DVec3| (point - self.corner).dot(edge) / edge.length_squared();
-        let uv = DVec2::new(share(self.right), 1.0 - share(self.up));
+        let uv = self.uv(point);
         Chart { uv, along_u: self.right, along_v: -self.up }.at(point, self.normal, 0)
     }
 
     fn is_closed(&self) -> bool {
         false
+    }
+
+    fn form(&self) -> Form {
+        let square = |corners: [DVec3; 3]| FlatTriangle {
+            corners,
+            texcoords: corners.map(|corner| self.uv(corner)),
+            surface: 0,
+        };
+        self.parallelogram.map_or(Form::Other, |corners| Form::Parallelogram(square(corners)))
     }
 }

@@ -15,6 +15,9 @@
 //! is missed, silhouettes are exact at any zoom, and what is computed for a hit is good to about 14
 //! digits of the size of the surface.
 //!
+//! Many rays that are near each other go through the boxes together, and through Newton's method eight at a
+//! time ([`together`]).
+//!
 //! At the border of a patch or cell a hit counts on both sides, within what rounding can do, so nothing
 //! slips through between patches with a common edge; [`Intersect::crossings`] then takes the two for one.
 //! A ray that touches the surface, to within rounding, passes by; so does one that runs within a flat
@@ -23,6 +26,7 @@
 //! Sources: Kajiya 1982 and Toth 1985 on meeting patches by Newton's method with bounds; Krawczyk 1969;
 //! Nishita, Sederberg and Kakimoto 1990.
 
+mod block;
 mod border;
 mod cells;
 mod divide;
@@ -31,6 +35,7 @@ mod net;
 mod patch;
 mod roots;
 mod search;
+mod together;
 
 use std::collections::BTreeSet;
 
@@ -42,6 +47,7 @@ use senca_scene::{BezierPatch, NurbsSurface, ShapeError};
 
 use super::{Crossing, Crossings, Intersect, SurfacePoint};
 use crate::{Counters, Ray};
+pub(crate) use block::{BLOCK, RayBlock};
 use cells::Cell;
 use divide::BinaryTree;
 use hierarchy::{Hierarchy, Link};
@@ -194,7 +200,9 @@ impl PatchSurface {
     /// Bytes taken by cells, hierarchy and patches.
     #[must_use]
     pub fn memory(&self) -> usize {
+        let hulls = self.cells.iter().filter(|cell| cell.hull.is_some()).count();
         size_of_val(self.cells.as_slice())
+            + hulls * size_of::<[[f32; 16]; 3]>()
             + self.hierarchy.memory()
             + self.patches.len() * (size_of::<Patch>() + size_of::<[f64; 64]>())
     }
@@ -231,7 +239,7 @@ impl PatchSurface {
     fn unit_normal(&self, part: u32, uv: DVec2, jet: &PatchJet) -> DVec3 {
         let cross = jet.du.cross(jet.dv);
         let size = jet.du.length_squared().max(jet.dv.length_squared());
-        if cross.length_squared() > 1e-12 * size * size {
+        if cross.length_squared() > SINGULAR * size * size {
             return cross.normalize();
         }
         self.limit_normal(part, uv).unwrap_or(DVec3::Y)
@@ -262,6 +270,10 @@ impl PatchSurface {
         ((within(domain, uv) - low) / size, 2.0 * domain.half() / size)
     }
 }
+
+/// Share of the square of the larger derivative's below which the square of their product says nothing of the
+/// normal.
+const SINGULAR: f64 = 1e-12;
 
 /// Refuses more patches than can be held.
 fn at_most(shape: &'static str, patches: usize) -> Result<(), ShapeError> {
@@ -378,6 +390,10 @@ impl Intersect for PatchSurface {
             color: Vec4::ONE,
             surface,
         }
+    }
+
+    fn patches(&self) -> Option<&PatchSurface> {
+        Some(self)
     }
 
     fn memory_bytes(&self) -> usize {

@@ -190,6 +190,12 @@ impl<'s> Object<'s> {
         }
     }
 
+    /// Centre of the bounds, and the square of the distance from it from which on rays are moved up before
+    /// they are tested.
+    pub(crate) fn far(&self) -> (DVec3, f64) {
+        (self.center_world, self.far_squared)
+    }
+
     /// The nearest crossing that the ray of the world admits.
     #[inline]
     pub(crate) fn closest(&self, ray: &Ray, counters: &mut Counters) -> Option<Crossing> {

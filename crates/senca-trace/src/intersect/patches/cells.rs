@@ -36,6 +36,15 @@ pub(super) struct Cell {
     pub patch: u32,
     /// Middle and half size of its rectangle: multiples of powers of 1/2, and so exact.
     pub uv: [f32; 4],
+    /// Points of which the cell lies within the hull, coordinate by coordinate, where they are sixteen.
+    pub hull: Option<Box<[[f32; 16]; 3]>>,
+}
+
+/// The control points of a bicubic piece.
+fn hull(net: &Net<DVec4>) -> Option<Box<[[f32; 16]; 3]>> {
+    let points: &[DVec4; 16] = net.points().try_into().ok()?;
+    let coordinate = |axis: usize| points.map(|p| (p[axis] / p.w) as f32);
+    Some(Box::new([coordinate(0), coordinate(1), coordinate(2)]))
 }
 
 /// Half size of a cell with its margin; the cell's is 1.
@@ -190,7 +199,12 @@ fn outer_change(local: &Net<DVec4>, is_rational: bool) -> DVec3 {
 
 impl Cell {
     /// The cell of a surveyed piece. Bounds are widened by what single precision loses.
-    pub(super) fn new(patch: u32, domain: &Domain, survey: &Survey, is_rational: bool) -> Self {
+    pub(super) fn new(
+        patch: u32,
+        (domain, net): (&Domain, &Net<DVec4>),
+        survey: &Survey,
+        is_rational: bool,
+    ) -> Self {
         let (center, half) = (domain.center(), domain.half());
         let uv = [center.x, center.y, half.x, half.y].map(|x| x as f32);
         let Some(frame) = &survey.frame else {
@@ -203,6 +217,7 @@ impl Cell {
                 extent: Vec3::INFINITY,
                 patch,
                 uv,
+                hull: hull(net),
             };
         };
         let rows = frame.local_from_object.transpose();
@@ -221,12 +236,28 @@ impl Cell {
             extent: (frame.extent + loss).as_vec3(),
             patch,
             uv,
+            hull: hull(net),
         }
     }
 
     /// Along the normal at the centre; zero without a frame.
     pub(super) fn normal(&self) -> Vec3 {
         self.local_from_object.row(2)
+    }
+
+    /// Whether all of the cell is on one side of a plane through `origin` across `normal`, a unit vector.
+    pub(super) fn is_beside(&self, origin: DVec3, normal: DVec3) -> bool {
+        let Some(hull) = &self.hull else { return false };
+        let [x, y, z] = normal.as_vec3().to_array();
+        let height = normal.dot(origin) as f32;
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        for i in 0..16 {
+            let above = hull[0][i] * x + hull[1][i] * y + hull[2][i] * z - height;
+            low = low.min(above);
+            high = high.max(above);
+        }
+        let error = 2.0 * PLACE_ERROR as f32;
+        low > error || high < -error
     }
 
     /// Its rectangle.

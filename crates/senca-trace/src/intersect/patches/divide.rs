@@ -114,7 +114,8 @@ pub(super) fn divide(number: u32, patch: &Patch, most: usize) -> (Vec<Cell>, Bin
         let is_done = piece.survey.error <= FLAT || size <= smallest || cells.len() + open.len() + 2 > most;
         if is_done {
             tree.nodes[piece.node as usize].kind = NodeKind::Leaf(cells.len() as u32);
-            cells.push(Cell::new(number, &piece.domain, &piece.survey, patch.is_rational));
+            let place = (&piece.domain, &piece.net);
+            cells.push(Cell::new(number, place, &piece.survey, patch.is_rational));
             continue;
         }
         let axis = piece.survey.axis;

@@ -5,6 +5,7 @@ use senca_math::glam::Vec3;
 use smallvec::SmallVec;
 
 use super::divide::{BinaryNode, BinaryTree, NodeKind};
+use crate::lanes::{bits_of, channels};
 
 /// Boxes of one node.
 const WIDTH: usize = 8;
@@ -144,6 +145,143 @@ impl Hierarchy {
             }
         }
         visited
+    }
+}
+
+/// A cell whose box a beam meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    /// Where its rays meet the box at the earliest.
+    pub near: f32,
+    pub cell: u32,
+    /// Per axis the low and the high side of the box.
+    pub sides: [[f32; 2]; 3],
+}
+
+/// Bounds on a bundle of rays: every box that one of them meets is met by the beam, by the same products
+/// and differences, which round the same way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beam {
+    /// Least and greatest coordinate of the origins.
+    pub origin: [[f32; 3]; 2],
+    /// Of the inverse directions.
+    pub inverse: [[f32; 3]; 2],
+    /// Of the directions.
+    pub direction: [[f32; 3]; 2],
+    /// Least and greatest distance along the rays.
+    pub near: f32,
+    pub far: f32,
+}
+
+impl Hierarchy {
+    /// Puts the cells below `root` whose boxes the beam meets into `out`, unless they are more than `most`:
+    /// then the answer is `false`. Counts nodes looked at.
+    #[inline(always)]
+    pub(super) fn collect<S: Simd>(
+        &self,
+        simd: S,
+        root: Link,
+        beam: &Beam,
+        most: usize,
+        (out, nodes): (&mut Vec<Candidate>, &mut u64),
+    ) -> bool {
+        let slabs = BeamSlabs::new(simd, beam);
+        out.clear();
+        let mut stack: SmallVec<[Link; 64]> = SmallVec::new();
+        if let Some(cell) = root.as_cell().filter(|_| root != Link::NONE) {
+            let sides = [[f32::NEG_INFINITY, f32::INFINITY]; 3];
+            out.push(Candidate { near: f32::NEG_INFINITY, cell, sides });
+        } else if root != Link::NONE {
+            stack.push(root);
+        }
+        while let Some(link) = stack.pop() {
+            *nodes += 1;
+            let node = &self.nodes[link.0 as usize];
+            let (met, nears) = slabs.meet(node);
+            for slot in bits_of(met) {
+                let slot = slot % WIDTH;
+                match node.children[slot].as_cell() {
+                    None => stack.push(node.children[slot]),
+                    Some(cell) => {
+                        let side = |axis: usize, k: usize| node.sides[axis][k][slot];
+                        let sides = channels!(axis => [side(axis, 0), side(axis, 1)]);
+                        out.push(Candidate { near: nears[slot], cell, sides });
+                    }
+                }
+            }
+            if out.len() > most {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// A beam made ready for boxes.
+struct BeamSlabs<S: Simd> {
+    axes: [BeamAxis<S>; 3],
+    near: f32x8<S>,
+    far: f32x8<S>,
+}
+
+/// What a beam does along one axis.
+struct BeamAxis<S: Simd> {
+    /// Index of the side that all rays meet first; 2 where some go up and some down.
+    first: usize,
+    /// The origin that makes the first side nearest, and the one that makes the second farthest; the least
+    /// and greatest coordinate where rays go both ways.
+    origin: [f32x8<S>; 2],
+    inverse: [f32x8<S>; 2],
+}
+
+impl<S: Simd> BeamAxis<S> {
+    #[inline(always)]
+    fn new(simd: S, beam: &Beam, axis: usize) -> Self {
+        let [least, greatest] = [beam.origin[0][axis], beam.origin[1][axis]];
+        let [slow, fast] = [beam.inverse[0][axis], beam.inverse[1][axis]];
+        let inverse = [f32x8::splat(simd, slow), f32x8::splat(simd, fast)];
+        let (first, origin) = if slow > 0.0 {
+            (0, [greatest, least])
+        } else if fast < 0.0 {
+            (1, [least, greatest])
+        } else {
+            // Where the rays get between their ends, a little more.
+            let way = 1.0001 * beam.near.abs().max(beam.far.abs());
+            let speed = beam.direction[0][axis].abs().max(beam.direction[1][axis].abs());
+            (2, [least - way * speed, greatest + way * speed])
+        };
+        Self { first, origin: [f32x8::splat(simd, origin[0]), f32x8::splat(simd, origin[1])], inverse }
+    }
+}
+
+impl<S: Simd> BeamSlabs<S> {
+    #[inline(always)]
+    fn new(simd: S, beam: &Beam) -> Self {
+        Self {
+            axes: channels!(axis => BeamAxis::new(simd, beam, axis)),
+            near: f32x8::splat(simd, beam.near),
+            far: f32x8::splat(simd, beam.far),
+        }
+    }
+
+    /// Which boxes may be met by one of the rays, one bit each, and where at the earliest.
+    #[inline(always)]
+    fn meet(&self, node: &WideNode) -> (u64, [f32; WIDTH]) {
+        let simd = self.near.token();
+        let (mut near, mut far) = (self.near, self.far);
+        let mut crossed = 0xff;
+        for (axis, sides) in self.axes.iter().zip(&node.sides) {
+            let [low, high] = [f32x8::simd_from(simd, sides[0]), f32x8::simd_from(simd, sides[1])];
+            if axis.first == 2 {
+                crossed &= (low.simd_le(axis.origin[1]) & high.simd_ge(axis.origin[0])).to_bitmask();
+                continue;
+            }
+            let (front, back) = if axis.first == 0 { (low, high) } else { (high, low) };
+            let (front, back) = (front - axis.origin[0], back - axis.origin[1]);
+            near = near.max((front * axis.inverse[0]).min(front * axis.inverse[1]));
+            far = far.min((back * axis.inverse[0]).max(back * axis.inverse[1]));
+        }
+        (near.simd_le(far).to_bitmask() & crossed, near.into())
     }
 }
 

@@ -5,6 +5,7 @@ use senca_math::glam::{DVec2, DVec3, DVec4};
 use smallvec::SmallVec;
 
 use super::net::{Axis, Jet, Net};
+use crate::lanes::{F, V, channels};
 
 /// A patch in the normalized space of its surface, in which all of it lies about within the unit ball.
 #[derive(Clone, Debug)]
@@ -43,6 +44,36 @@ impl Patch {
             None => self.net.at(uv.x, uv.y),
         };
         if self.is_rational { quotient(&jet) } else { truncated(&jet) }
+    }
+
+    /// Whether no degree is above 3, so that eight places are evaluated at once.
+    pub(super) fn is_cubic(&self) -> bool {
+        self.power.is_some()
+    }
+
+    /// Point and derivatives at eight places; `None` when a degree is above 3.
+    #[inline(always)]
+    pub(super) fn at_eight<S: Simd>(&self, simd: S, u: F<S>, v: F<S>) -> Option<Jet<V<S>>> {
+        let power = self.power.as_ref()?;
+        let half = F::splat(simd, 0.5);
+        let (u, v) = (u - half, v - half);
+        let [x, y, z] = channels!(k => cubic_at_eight(simd, power, k, u, v));
+        let jet = Jet {
+            value: V { x: x[0], y: y[0], z: z[0] },
+            du: V { x: x[1], y: y[1], z: z[1] },
+            dv: V { x: x[2], y: y[2], z: z[2] },
+        };
+        if !self.is_rational {
+            return Some(jet);
+        }
+        let [w, w_u, w_v] = cubic_at_eight(simd, power, 3, u, v);
+        let inverse = F::splat(simd, 1.0) / w;
+        let value = jet.value.times(inverse);
+        Some(Jet {
+            value,
+            du: jet.du.sub(value.times(w_u)).times(inverse),
+            dv: jet.dv.sub(value.times(w_v)).times(inverse),
+        })
     }
 
     /// Whether both derivatives are there and independent.
@@ -113,6 +144,32 @@ fn cubic_at<S: Simd>(simd: S, power: &[[f64; 4]; 16], uv: DVec2) -> Jet<DVec4> {
         du: DVec4::from_array((((d3 * v + d2) * v + d1) * v + d0).into()),
         dv: DVec4::from_array(((s3 * v + p2) * v + p1).into()),
     }
+}
+
+/// Component `k` at eight places, with the derivatives along u and v: see [`cubic_at`].
+#[inline(always)]
+fn cubic_at_eight<S: Simd>(simd: S, power: &[[f64; 4]; 16], k: usize, u: F<S>, v: F<S>) -> [F<S>; 3] {
+    let ((s0, d0), (s1, d1), (s2, d2), (s3, d3)) = (
+        row_at_eight(simd, power, 0, k, u),
+        row_at_eight(simd, power, 4, k, u),
+        row_at_eight(simd, power, 8, k, u),
+        row_at_eight(simd, power, 12, k, u),
+    );
+    let p2 = s3 * v + s2;
+    let p1 = p2 * v + s1;
+    [p1 * v + s0, ((d3 * v + d2) * v + d1) * v + d0, (s3 * v + p2) * v + p1]
+}
+
+/// Component `k` of the four coefficients from `first` on, and its derivative along u.
+#[inline(always)]
+fn row_at_eight<S: Simd>(simd: S, power: &[[f64; 4]; 16], first: usize, k: usize, u: F<S>) -> (F<S>, F<S>) {
+    let c0 = F::splat(simd, power[first][k]);
+    let c1 = F::splat(simd, power[first + 1][k]);
+    let c2 = F::splat(simd, power[first + 2][k]);
+    let c3 = F::splat(simd, power[first + 3][k]);
+    let p2 = c3 * u + c2;
+    let p1 = p2 * u + c1;
+    (p1 * u + c0, (c3 * u + p2) * u + p1)
 }
 
 /// Value and derivative along u of the four coefficients from `first` on.

@@ -5,6 +5,7 @@ use senca_math::glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
 use super::PatchSurface;
+use super::block::comes_before;
 use super::cells::{Cell, MARGIN, Meeting};
 use super::hierarchy::{SingleRay, Visitor};
 use super::patch::Patch;
@@ -61,15 +62,30 @@ impl LocalRay {
         Some(Self { origin, direction, start, per_distance, single })
     }
 
+    /// One that is known already; `parameters` are those of [`LocalRay::parameters`].
+    pub(super) fn of_parts(
+        origin: DVec3,
+        direction: DVec3,
+        (start, per_distance): (f64, f64),
+        single: SingleRay,
+    ) -> Self {
+        Self { origin, direction, start, per_distance, single }
+    }
+
+    /// Parameter of the ray at the origin, and its growth per distance.
+    pub(super) fn parameters(&self) -> (f64, f64) {
+        (self.start, self.per_distance)
+    }
+
     /// Parameter of the ray at a distance.
     #[inline(always)]
-    fn parameter(&self, distance: f64) -> f64 {
+    pub(super) fn parameter(&self, distance: f64) -> f64 {
         self.start + distance * self.per_distance
     }
 }
 
 /// Room for rounding in single precision.
-const SLACK: f32 = 1e-5;
+pub(super) const SLACK: f32 = 1e-5;
 
 /// A place where the ray meets the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,14 +105,13 @@ pub(super) trait Wanted {
     fn limit(&self) -> f32;
 }
 
-/// The hit with the smallest parameter; among equal ones that of the first patch.
+/// The hit with the smallest parameter; among equal ones see [`comes_before`].
 pub(super) struct Nearest(pub Option<Hit>);
 
 impl Wanted for Nearest {
     #[inline(always)]
     fn take(&mut self, hit: Hit) {
-        let order = |h: &Hit| (h.crossing.t, h.crossing.part);
-        if self.0.is_none_or(|best| order(&hit) < order(&best)) {
+        if self.0.is_none_or(|best| comes_before(&hit.crossing, &best.crossing)) {
             self.0 = Some(hit);
         }
     }
@@ -150,18 +165,8 @@ impl<S: Simd, W: Wanted> Visitor<S> for Search<'_, W> {
     #[inline(always)]
     fn cell(&mut self, simd: S, index: u32) {
         self.tests += 1;
-        let cell = &self.surface.cells[index as usize];
-        let near = match cell.meets(self.local.single.origin, self.local.single.direction) {
-            Meeting::Never => return,
-            Meeting::Unknown => return self.divide(cell),
-            Meeting::Once(near) => near.as_dvec2(),
-        };
-        let patch = &self.surface.patches[cell.patch as usize];
-        match newton(simd, patch, cell, near, &self.local) {
-            Newton::Outside => {}
-            Newton::Lost => self.divide(cell),
-            Newton::Inside { root, distance } => self.take(cell.patch, root, distance),
-        }
+        let surface = self.surface;
+        self.alone(simd, &surface.cells[index as usize]);
     }
 
     #[inline(always)]
@@ -181,21 +186,38 @@ impl<W: Wanted> Search<'_, W> {
         }
     }
 
+    /// The hits in a cell that is looked at for this ray alone, from near which Newton's method may start.
+    #[inline(always)]
+    pub(super) fn alone<S: Simd>(&mut self, simd: S, cell: &Cell) {
+        let near = match cell.meets(self.local.single.origin, self.local.single.direction) {
+            Meeting::Never => return,
+            Meeting::Unknown => return self.divide(cell),
+            Meeting::Once(near) => near.as_dvec2(),
+        };
+        let patch = &self.surface.patches[cell.patch as usize];
+        match newton(simd, patch, cell, near, &self.local) {
+            Newton::Outside => {}
+            Newton::Lost => self.divide(cell),
+            Newton::Inside { root, distance } => self.take(cell.patch, root, distance),
+        }
+    }
+
     /// The roots in a cell of which nothing is certain.
     #[cold]
     #[inline(never)]
-    fn divide(&mut self, cell: &Cell) {
-        self.divide_along(cell.patch, cell.domain(), cell.normal().as_dvec3());
+    pub(super) fn divide(&mut self, cell: &Cell) {
+        self.divide_along(cell.patch, cell.domain(), Some(cell));
     }
 
     /// The roots in a part of a patch, by dividing it.
     pub(super) fn by_division(&mut self, part: u32, domain: Domain) {
-        self.divide_along(part, domain, DVec3::ZERO);
+        self.divide_along(part, domain, None);
     }
 
     /// As [`Search::by_division`]. One of the two planes in which the ray lies is the one that is most
-    /// square to `normal`: a ray that runs over a bent piece without touching it has all of it on one side.
-    fn divide_along(&mut self, part: u32, domain: Domain, normal: DVec3) {
+    /// square to the normal of the cell: a ray that runs over a bent piece without touching it has all of it on one side.
+    fn divide_along(&mut self, part: u32, domain: Domain, cell: Option<&Cell>) {
+        let normal = cell.map_or(DVec3::ZERO, |cell| cell.normal().as_dvec3());
         let patch = &self.surface.patches[part as usize];
         let (o, d) = (self.local.origin, self.local.direction);
         let across = normal - normal.dot(d) * d;
@@ -207,6 +229,9 @@ impl<W: Wanted> Search<'_, W> {
         } else {
             d.any_orthonormal_pair()
         };
+        if cell.is_some_and(|cell| cell.is_beside(o, y) || cell.is_beside(o, x)) {
+            return;
+        }
         let pair = patch.net.map(|p| {
             let offset = p.truncate() - o * p.w;
             DVec2::new(x.dot(offset), y.dot(offset))
@@ -225,7 +250,7 @@ impl<W: Wanted> Search<'_, W> {
 }
 
 /// What Newton's method says of a cell with at most one root.
-enum Newton {
+pub(super) enum Newton {
     Inside {
         root: Root,
         distance: f64,
@@ -237,7 +262,7 @@ enum Newton {
 
 /// Steps, in half sizes of the cell, after which Newton's method has settled: the next would be the square
 /// of it.
-const SETTLED: f64 = 1e-7;
+pub(super) const SETTLED: f64 = 1e-7;
 
 /// Newton's method for `origin + s direction = S(u, v)` from a place in the frame of a cell.
 #[inline(always)]
@@ -267,7 +292,7 @@ fn newton<S: Simd>(simd: S, patch: &Patch, cell: &Cell, start: DVec2, ray: &Loca
 
 /// Whether a root lies in the cell; `error` is that of (u, v) per error of the place.
 #[inline(always)]
-fn settle(cell: &Cell, uv: DVec2, error: impl Fn() -> DVec2, distance: f64, sign: f64) -> Newton {
+pub(super) fn settle(cell: &Cell, uv: DVec2, error: impl Fn() -> DVec2, distance: f64, sign: f64) -> Newton {
     let domain = cell.domain();
     if !domain.holds(uv, DVec2::splat(-WIDEST)) {
         let tolerance = (5.0 * ROUNDING * error() + 1e-13).min(DVec2::splat(WIDEST));
@@ -280,4 +305,4 @@ fn settle(cell: &Cell, uv: DVec2, error: impl Fn() -> DVec2, distance: f64, sign
 }
 
 /// Most that a root may lie outside of a cell and count as in it.
-const WIDEST: f64 = 1e-6;
+pub(super) const WIDEST: f64 = 1e-6;

@@ -5,7 +5,7 @@ use senca_scene::{BezierPatch, NurbsSurface, Shape};
 use super::*;
 
 /// The teapot as the 1991 thesis gives it.
-fn teapot() -> Vec<BezierPatch> {
+pub(super) fn teapot() -> Vec<BezierPatch> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/classic/teapot.bez");
     let scene = senca_io::load(std::path::Path::new(path)).unwrap();
     let patches = |shape: &Shape| match shape {
@@ -15,7 +15,7 @@ fn teapot() -> Vec<BezierPatch> {
     scene.geometries.iter().flat_map(|g| patches(&g.shape)).collect()
 }
 
-fn surface(patches: &[BezierPatch]) -> PatchSurface {
+pub(super) fn surface(patches: &[BezierPatch]) -> PatchSurface {
     PatchSurface::from_bezier(patches).unwrap()
 }
 
@@ -125,7 +125,7 @@ proptest! {
 }
 
 /// Rays from all sides through places near the teapot.
-fn rays_around(count: u32) -> impl Iterator<Item = Ray> {
+pub(super) fn rays_around(count: u32) -> impl Iterator<Item = Ray> {
     // A low-discrepancy sequence in four dimensions.
     let share = |i: u32, base: f64| (f64::from(i) * base).fract();
     (1..=count).map(move |i| {
@@ -209,7 +209,7 @@ fn nothing_slips_through_the_seams_of_the_teapot() {
 }
 
 /// A ball as a rational surface: a half circle turned about z.
-fn ball(radius: f64) -> NurbsSurface {
+pub(super) fn ball(radius: f64) -> NurbsSurface {
     let w = 0.5f64.sqrt();
     let circle = [
         (1.0, 0.0),

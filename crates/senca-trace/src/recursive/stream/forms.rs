@@ -9,9 +9,9 @@ use fearless_simd::{Simd, prelude::*};
 use senca_math::Aabb;
 use senca_math::glam::{DVec2, DVec3};
 
-use super::lanes::{F, LANES, M, V, bits_of, channels, lanes_of, larger};
 use super::rays::Packet;
 use crate::intersect::{FlatTriangle, Form};
+use crate::lanes::{F, LANES, M, V, bits_of, channels, lanes_of, larger};
 use crate::{Counters, Crossing, Hit, Object, Ray};
 
 /// The surfaces of a world.
@@ -23,6 +23,8 @@ pub(super) struct Forms {
     opaque_balls: u64,
     sheets: Vec<Sheet>,
     others: Vec<Other>,
+    /// Those made of patches, which more rays meet at once.
+    pub(super) patched: Vec<Other>,
     /// By rank.
     pub(super) ranks: Vec<Rank>,
     /// Rank of each object's first part.
@@ -46,6 +48,7 @@ pub(super) struct Rank {
 pub(super) enum Kind {
     Ball,
     Sheet,
+    Patches,
     Other,
 }
 
@@ -87,10 +90,10 @@ struct Coordinate {
 
 /// Anything else.
 #[derive(Clone, Copy, Debug)]
-struct Other {
+pub(super) struct Other {
     bounds: Aabb,
-    object: u32,
-    rank: f64,
+    pub(super) object: u32,
+    pub(super) rank: f64,
 }
 
 /// The nearest hits of eight rays.
@@ -131,6 +134,7 @@ impl Forms {
             Form::Triangles(triangles) if !triangles.is_empty() => {
                 self.add_triangles(number, object, &triangles);
             }
+            Form::Parallelogram(square) => self.add_triangle(number, object, 0, &square, true),
             _ => self.add_other(number, object),
         }
     }
@@ -141,8 +145,9 @@ impl Forms {
     }
 
     fn add_other(&mut self, number: u32, object: &Object<'_>) {
+        let is_patched = object.surface.patches().is_some();
         let rank = Rank {
-            kind: Kind::Other,
+            kind: if is_patched { Kind::Patches } else { Kind::Other },
             object: number,
             part: 0,
             material: object.material_of(0),
@@ -150,7 +155,8 @@ impl Forms {
             texture: [DVec2::ZERO; 3],
         };
         let rank = self.rank(rank);
-        self.others.push(Other { bounds: object.bounds_world, object: number, rank });
+        let other = Other { bounds: object.bounds_world, object: number, rank };
+        if is_patched { self.patched.push(other) } else { self.others.push(other) }
     }
 
     fn add_ball(&mut self, number: u32, object: &Object<'_>, radius: f64) {
@@ -433,7 +439,7 @@ impl Forms {
     pub(super) fn hit(&self, rank: usize, t: f64, other: &Hit) -> Hit {
         let Rank { kind, object, part, .. } = self.ranks[rank];
         match kind {
-            Kind::Other => *other,
+            Kind::Other | Kind::Patches => *other,
             Kind::Ball | Kind::Sheet => Hit { object, crossing: Crossing { t, part, uv: DVec2::ZERO } },
         }
     }
@@ -520,7 +526,7 @@ fn passes_through<S: Simd>(simd: S, o: V<S>, d: V<S>, corners: &[DVec3; 3]) -> M
 
 /// 1 / direction, finite where a component is 0.
 #[inline(always)]
-fn reciprocal<S: Simd>(simd: S, d: V<S>) -> V<S> {
+pub(super) fn reciprocal<S: Simd>(simd: S, d: V<S>) -> V<S> {
     V { x: one_over(simd, d.x), y: one_over(simd, d.y), z: one_over(simd, d.z) }
 }
 
@@ -533,7 +539,7 @@ fn one_over<S: Simd>(simd: S, x: F<S>) -> F<S> {
 impl Other {
     /// Whether rays pass through the box between two parameters.
     #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, o: V<S>, reciprocal: V<S>, t_min: F<S>, t_max: F<S>) -> M<S> {
+    pub(super) fn meet<S: Simd>(&self, simd: S, o: V<S>, reciprocal: V<S>, t_min: F<S>, t_max: F<S>) -> M<S> {
         let (mut enter, mut leave) = (t_min, t_max);
         let (min, max) = (self.bounds.min, self.bounds.max);
         for (o, reciprocal, min, max) in [

@@ -5,7 +5,7 @@ use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
 use senca_shading::PhongConstants;
 
-use super::lanes::{F, LANES, M};
+use crate::lanes::{F, LANES, M};
 use crate::material::{MaterialPoint, ReflectionPoint};
 use crate::recursive::lamps::ToLight;
 use crate::recursive::{Backs, LightModel, Tracer};

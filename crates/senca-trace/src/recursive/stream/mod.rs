@@ -2,8 +2,9 @@
 //!
 //! The rays of a batch of samples are followed level by level. Of all rays of a level, eight at a time,
 //! first what they meet is found ([`forms`]), then they are sorted by what that is, and what the places
-//! there send back and send on is computed ([`shade`]), the latter as the rays of the next level. It is
-//! the same algorithm in the same precision as [`Tracer::sample`]'s, so results differ by rounding only,
+//! there send back and send on is computed ([`shade`]), the latter as the rays of the next level. Rays
+//! towards lights are gathered and looked at together; surfaces of patches are met by 64 rays at a time
+//! ([`patches`]). It is the same algorithm in the same precision as [`Tracer::sample`]'s, so results differ by rounding only,
 //! and the same samples are taken.
 //!
 //! Rays that meet what is not done here, such as glass or a blended surface, are handed over to the
@@ -13,8 +14,8 @@
 //! Sources: Wald et al. 2001 on packets; Wald et al. 2007 and Áfra et al. 2016 on sorted streams.
 
 mod forms;
-mod lanes;
 mod looks;
+mod patches;
 mod power;
 mod rays;
 mod shade;
@@ -28,18 +29,26 @@ use senca_math::{LinearRgb, ViewKind};
 use super::follow::{MAX_RAYS_PER_SAMPLE, Pending, RayKind, Work};
 use super::media::Media;
 use super::{Blockers, Tracer};
-use crate::{Accel, Hit, SamplePlace, TraceCounts};
+use crate::intersect::RayBlock;
+use crate::lanes::{F, LANES, V, eight, first_lanes};
+use crate::{Accel, Hit, Object, SamplePlace, TraceCounts};
 use forms::{Forms, Kind, NO_HIT, Rank};
-use lanes::{F, LANES, V, eight, first_lanes};
 use looks::{Lamp, Look, Way};
 use rays::{Packet, Rays};
 
-/// Groups of rays by what they meet: nothing, a ball, a sheet, or anything else.
-const GROUPS: usize = 4;
+/// Groups of rays by what they meet: nothing, a ball, a sheet, a patch, or anything else.
+const GROUPS: usize = 5;
 const LEAVING: usize = 0;
 const BALLS: usize = 1;
 const SHEETS: usize = 2;
-const GENERAL: usize = 3;
+const PATCHES: usize = 3;
+const GENERAL: usize = 4;
+
+/// Lists of rays towards lights.
+const SHADOW_LISTS: usize = 8;
+
+/// Rays towards lights that are kept before they are looked at.
+const MOST_SHADOWS: usize = 1024;
 
 /// Samples that are followed together.
 const BATCH: usize = 1024;
@@ -80,6 +89,11 @@ pub(super) struct Desk {
     lengths: [usize; GROUPS],
     /// Numbers of the rays that are handed over.
     handed: Vec<u32>,
+    /// Rays towards each light, of which t_min is where they end and the weight the light that they bring.
+    /// Lights beyond [`SHADOW_LISTS`] share.
+    shadows: Vec<Rays>,
+    /// Those that look for patches together.
+    block: RayBlock,
     /// What each sample has gathered.
     sums: Vec<[f32; 4]>,
 }
@@ -89,6 +103,7 @@ impl Desk {
         for rays in [&mut self.rays, &mut self.next, &mut self.again] {
             rays.clear(count);
         }
+        self.shadows.resize_with(SHADOW_LISTS, Rays::default);
         for list in &mut self.lists {
             list.resize(list.len().max(count), 0);
         }
@@ -136,6 +151,7 @@ impl Stream {
         let group = |rank: &Rank| match (rank.kind, looks[rank.material].way) {
             (Kind::Ball, Way::Constant) => BALLS,
             (Kind::Sheet, Way::Constant | Way::Textured) => SHEETS,
+            (Kind::Patches, Way::Constant) if is_of_one(&world.objects()[rank.object as usize]) => PATCHES,
             _ => GENERAL,
         };
         let groups = std::iter::once(LEAVING).chain(forms.ranks.iter().map(group));
@@ -260,18 +276,23 @@ impl Tracer<'_> {
         );
         simd.vectorize(
             #[inline(always)]
+            || self.patches(simd, stream, &mut pass),
+        );
+        simd.vectorize(
+            #[inline(always)]
             || self.general(simd, stream, &mut pass),
         );
+        self.cast_shadows(simd, stream, &mut pass);
     }
 
     /// What the rays meet.
     #[inline(always)]
     fn find<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
-        let Desk { rays, t, rank, hits, .. } = &mut *pass.desk;
-        let counters = &mut pass.counts.work;
         if !stream.is_flat {
             return self.find_one_by_one(stream, pass);
         }
+        let Desk { rays, t, rank, hits, .. } = &mut *pass.desk;
+        let counters = &mut pass.counts.work;
         for first in (0..rays.len()).step_by(LANES) {
             let (packet, live) = rays.load(simd, first);
             let hits = &mut hits[first..][..LANES];
@@ -280,6 +301,7 @@ impl Tracer<'_> {
             let found: i64x8<S> = found.rank.to_int();
             found.store_slice(&mut rank[first..][..LANES]);
         }
+        self.find_patches(simd, stream, pass);
     }
 
     /// The same where there are many surfaces.
@@ -353,6 +375,11 @@ impl Tracer<'_> {
         desk.handed = handed;
         desk.handed.clear();
     }
+}
+
+/// Whether all of an object has the same material.
+fn is_of_one(object: &Object<'_>) -> bool {
+    object.materials.iter().all(|material| *material == object.materials[0])
 }
 
 /// A row of a matrix times places (x, y, 0, 1).

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, i64x8, prelude::*};
 
-use super::lanes::F;
+use crate::lanes::F;
 
 /// Exponents of two beyond count as this: what is left is far below what single precision holds.
 const FARTHEST: f64 = 900.0;

@@ -4,8 +4,8 @@ use fearless_simd::{Simd, prelude::*};
 use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
 
-use super::lanes::{F, LANES, M, V, first_lanes};
 use crate::Ray;
+use crate::lanes::{F, LANES, M, V, first_lanes};
 
 /// Rays of one level of the trees of a batch: a row of numbers for each property. Directions are unit
 /// vectors, and rays have no end.
@@ -52,10 +52,22 @@ impl Rays {
         let Packet { origin: o, direction: d, t_min, weight: [r, g, b], distance, slot } = *packet;
         let values = [o.x, o.y, o.z, d.x, d.y, d.z, t_min, r, g, b, distance, slot];
         let count = mask.to_bitmask().count_ones() as usize;
-        for (row, value) in self.rows.iter_mut().zip(values) {
+        for (row, value) in self.rows.iter_mut().zip(&values) {
             value.compress(mask).store_slice(&mut row[self.len..][..LANES]);
         }
         self.len += count;
+    }
+
+    /// The same where there may be no room left.
+    #[inline(always)]
+    pub(super) fn push_more<S: Simd>(&mut self, mask: M<S>, packet: &Packet<S>) {
+        if self.rows[0].len() < self.len + 2 * LANES {
+            let more = 2 * self.rows[0].len() + LANES;
+            for row in &mut self.rows {
+                row.resize(more, 0.0);
+            }
+        }
+        self.push(mask, packet);
     }
 
     /// Appends a ray of others, from t on.
@@ -98,6 +110,12 @@ impl Rays {
             t_min: at(6),
             t_max: f64::INFINITY,
         }
+    }
+
+    /// One ray towards a light: of these, t_min is where they end.
+    pub(super) fn shadow_ray(&self, number: usize) -> Ray {
+        let ray = self.ray(number);
+        Ray { t_min: 0.0, t_max: ray.t_min, ..ray }
     }
 
     /// Number of the sample, the product of the coefficients, and the direction of a ray.

@@ -2,15 +2,16 @@
 
 use fearless_simd::{Simd, prelude::*};
 use senca_math::LinearRgb;
-use senca_math::glam::{DVec3, Vec3};
+use senca_math::glam::{DVec2, DVec3, Vec3};
 use senca_shading::{Incident, PhongConstants};
 
-use super::lanes::{F, LANES, M, V, channels, eight, first_lanes, lanes_of, larger};
+use super::forms::Rank;
 use super::looks::{Lamp, Look, Looks, Way};
 use super::power::power;
-use super::rays::{Packet, gather};
-use super::{BALLS, GENERAL, Pass, SHEETS, Stream};
-use crate::Ray;
+use super::rays::{Packet, Rays, gather};
+use super::{BALLS, GENERAL, MOST_SHADOWS, Pass, SHADOW_LISTS, SHEETS, Stream};
+use crate::intersect::BLOCK;
+use crate::lanes::{F, LANES, M, V, bits_of, channels, eight, first_lanes, lanes_of, larger};
 use crate::recursive::Tracer;
 use crate::recursive::lamps::ToLight;
 use crate::recursive::reflector::Reflector;
@@ -98,18 +99,31 @@ impl Tracer<'_> {
         [u, v]: [F<S>; 2],
         looks: &mut Looks<S>,
     ) {
-        let rank = |lane: usize| &stream.forms.ranks[ranks[lane] as usize];
-        if (0..LANES).all(|lane| stream.looks[rank(lane).material].way != Way::Textured) {
+        let ranks: [&Rank; LANES] = eight!(lane => &stream.forms.ranks[ranks[lane] as usize]);
+        if ranks.iter().all(|rank| stream.looks[rank.material].way != Way::Textured) {
             return;
         }
-        let (u, v) = (u.to_array(), v.to_array());
+        let x = picture_place(simd, &ranks, 0, [u, v]);
+        let y = picture_place(simd, &ranks, 1, [u, v]);
+        let alike = ranks.iter().all(|rank| rank.material == ranks[0].material);
+        let texture = self.materials.base_texture(ranks[0].material).filter(|_| alike);
+        let found = texture.and_then(
+            #[inline(always)]
+            |texture| texture.sample_eight(simd, [x, y]),
+        );
         let mut texels = [[1.0; LANES]; 3];
-        for lane in 0..LANES {
-            let [start, along_u, along_v] = rank(lane).texture;
-            let place = start + u[lane] * along_u + v[lane] * along_v;
-            if let Some(texel) = self.materials.base_texel(rank(lane).material, place) {
-                for k in 0..3 {
-                    texels[k][lane] = f64::from(texel[k]);
+        if let Some(found) = found {
+            for k in 0..3 {
+                texels[k] = eight!(lane => f64::from(found[lane][k]));
+            }
+        } else {
+            let (x, y) = (x.to_array(), y.to_array());
+            for lane in 0..LANES {
+                let place = DVec2::new(x[lane], y[lane]);
+                if let Some(texel) = self.materials.base_texel(ranks[lane].material, place) {
+                    for k in 0..3 {
+                        texels[k][lane] = f64::from(texel[k]);
+                    }
                 }
             }
         }
@@ -122,7 +136,7 @@ impl Tracer<'_> {
 
     /// Places that are shaded with the normal of the surface itself.
     #[inline(always)]
-    fn flat_places<S: Simd>(
+    pub(super) fn flat_places<S: Simd>(
         &self,
         simd: S,
         stream: &Stream,
@@ -243,8 +257,9 @@ impl Tracer<'_> {
         self.shade(simd, stream, pass, &rays, live, &places, reflectors.as_ref());
     }
 
-    /// Adds what the places send back, and puts the rays that they send on into the list.
-    #[inline(always)]
+    /// Adds what the places send back, and puts the rays that they send on into the list. Compiled once,
+    /// whatever the places are on.
+    #[inline(never)]
     fn shade<S: Simd>(
         &self,
         simd: S,
@@ -261,16 +276,17 @@ impl Tracer<'_> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let light = self.local_light_of(simd, stream, pass, rays, live, places, reflectors);
-                let weight = self.gather_light(simd, pass, rays, live, places, light);
+                let weight = self.gather_light(simd, pass, rays, live, places);
+                self.look_for_lamps(simd, stream, pass, rays, live, places, weight, reflectors);
                 self.reflect(simd, pass, rays, live, places, weight);
             },
         );
     }
 
-    /// I_l of equation 3.2.
+    /// I_l of equation 3.2 without the shadows: what the lamps would send, and the rays that find out whether
+    /// they do.
     #[inline(always)]
-    fn local_light_of<S: Simd>(
+    fn look_for_lamps<S: Simd>(
         &self,
         simd: S,
         stream: &Stream,
@@ -278,11 +294,12 @@ impl Tracer<'_> {
         rays: &Packet<S>,
         live: M<S>,
         places: &Places<S>,
+        weight: [F<S>; 3],
         reflectors: Option<&[Option<Reflector>; LANES]>,
-    ) -> [F<S>; 3] {
-        let zero = F::splat(simd, 0.0);
-        let Looks { emission, ambient, .. } = places.looks;
-        let mut sum = channels!(k => emission[k] + ambient[k]);
+    ) {
+        if pass.desk.shadows.iter().any(|list| list.len() >= MOST_SHADOWS) {
+            self.cast_shadows(simd, stream, pass);
+        }
         for (number, lamp) in stream.lamps.iter().enumerate() {
             let count = self.lights[number].places(self.settings.soft_shadows);
             for index in 0..count {
@@ -299,13 +316,88 @@ impl Tracer<'_> {
                 if !lit.any_true() {
                     continue;
                 }
-                let share = self.visible(simd, stream, pass, &coming, lit);
-                for k in 0..3 {
-                    sum[k] += lit.select(reflected[k] * share[k], zero);
-                }
+                let light = channels!(k => reflected[k] * weight[k]);
+                let Coming { origin, way, t_max, .. } = coming;
+                let (direction, distance) = (way, F::splat(simd, 0.0));
+                let shadow =
+                    Packet { origin, direction, t_min: t_max, weight: light, distance, slot: rays.slot };
+                pass.desk.shadows[number % SHADOW_LISTS].push_more(lit, &shadow);
             }
         }
-        sum
+    }
+
+    /// Looks which of the rays towards lights arrive, and adds their light to the samples: S_i of
+    /// equation 3.2.
+    #[inline(never)]
+    pub(super) fn cast_shadows<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.cast_all(simd, stream, pass),
+        );
+    }
+
+    #[inline(always)]
+    fn cast_all<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
+        let mut lists = std::mem::take(&mut pass.desk.shadows);
+        for list in &mut lists {
+            if self.settings.shadows {
+                pass.counts.rays.shadow += list.len() as u64;
+            }
+            for first in (0..list.len()).step_by(BLOCK) {
+                let clear = if self.settings.shadows {
+                    self.clear_of_block(simd, stream, pass, list, first)
+                } else {
+                    u64::MAX >> (BLOCK - (list.len() - first).min(BLOCK))
+                };
+                for lane in bits_of(clear) {
+                    let (slot, light, _) = list.leaving(first + lane);
+                    let light = if stream.asks && self.settings.shadows {
+                        let ray = list.shadow_ray(first + lane);
+                        light * self.visibility(&ray, &mut pass.counts.work)
+                    } else {
+                        light
+                    };
+                    pass.desk.add(slot, light, 0.0);
+                }
+            }
+            list.clear(0);
+        }
+        pass.desk.shadows = lists;
+    }
+
+    /// Which of the 64 rays towards lights from number `first` on meet nothing opaque.
+    #[inline(always)]
+    fn clear_of_block<S: Simd>(
+        &self,
+        simd: S,
+        stream: &Stream,
+        pass: &mut Pass<'_>,
+        list: &Rays,
+        first: usize,
+    ) -> u64 {
+        let counters = &mut pass.counts.work;
+        let mut clear = 0;
+        for from in (0..BLOCK.min(list.len() - first)).step_by(LANES) {
+            let (rays, live) = list.load(simd, first + from);
+            let blocked = if stream.is_flat {
+                let (objects, Packet { origin, direction, t_min: t_max, .. }) = (self.world.objects(), rays);
+                stream.forms.occluded(simd, objects, origin, direction, t_max, live, counters)
+            } else {
+                M::splat(simd, false)
+            };
+            clear |= (live & !blocked).to_bitmask() << from;
+        }
+        if stream.is_flat {
+            let room = (&mut pass.desk.block, counters);
+            return self.blocked_by_patches(simd, stream, list, first, clear, room);
+        }
+        if !stream.asks {
+            for lane in bits_of(clear) {
+                let is_seen = self.visibility(&list.shadow_ray(first + lane), counters).max_component() > 0.0;
+                clear &= !(u64::from(!is_seen) << lane);
+            }
+        }
+        clear
     }
 
     /// The light of a lamp, asked place by place.
@@ -357,45 +449,7 @@ impl Tracer<'_> {
         }
     }
 
-    /// S_i: the shares of the light that arrive at the `lit` places.
-    #[inline(always)]
-    fn visible<S: Simd>(
-        &self,
-        simd: S,
-        stream: &Stream,
-        pass: &mut Pass<'_>,
-        coming: &Coming<S>,
-        lit: M<S>,
-    ) -> [F<S>; 3] {
-        let (zero, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
-        if !self.settings.shadows {
-            return [one; 3];
-        }
-        pass.counts.rays.shadow += u64::from(lit.to_bitmask().count_ones());
-        let counters = &mut pass.counts.work;
-        let (origin, way, t_max) = (coming.origin, coming.way, coming.t_max);
-        let mut clear = lit;
-        if stream.is_flat {
-            let objects = self.world.objects();
-            let blocked = stream.forms.occluded(simd, objects, origin, way, t_max, lit, counters);
-            clear = lit & !blocked;
-            if !stream.asks || !clear.any_true() {
-                return [clear.select(one, zero); 3];
-            }
-        }
-        let mut shares = [[0.0; LANES]; 3];
-        let (origin, way, t_max) = (origin.to_array(), way.to_array(), t_max.to_array());
-        for lane in lanes_of(clear.to_bitmask()) {
-            let ray = Ray { origin: origin[lane], direction: way[lane], t_min: 0.0, t_max: t_max[lane] };
-            let share = self.visibility(&ray, &mut *counters).to_array();
-            for k in 0..3 {
-                shares[k][lane] = f64::from(share[k]);
-            }
-        }
-        channels!(k => F::load_array(simd, shares[k]))
-    }
-
-    /// Adds light to the samples. Returns the share of the places in the picture.
+    /// Adds the light that no lamp sends to the samples. Returns the share of the places in the picture.
     #[inline(always)]
     fn gather_light<S: Simd>(
         &self,
@@ -404,23 +458,19 @@ impl Tracer<'_> {
         rays: &Packet<S>,
         live: M<S>,
         places: &Places<S>,
-        light: [F<S>; 3],
     ) -> [F<S>; 3] {
+        let Looks { emission, ambient, .. } = places.looks;
         let mut weight = rays.weight;
-        let mut light = light;
+        let mut light = channels!(k => (emission[k] + ambient[k]) * weight[k]);
         if let Some(fog) = &self.fog {
             let (distance, t) = (rays.distance.to_array(), places.t.to_array());
             let clear =
                 F::load_array(simd, eight!(lane => f64::from(self.clear_share(distance[lane], t[lane]))));
+            let veil = F::splat(simd, 1.0) - clear;
             for k in 0..3 {
                 let color = F::splat(simd, f64::from(fog.color.to_array()[k]));
-                light[k] = light[k] * clear + color * (F::splat(simd, 1.0) - clear);
-                light[k] *= rays.weight[k];
+                light[k] = light[k] * clear + color * veil * weight[k];
                 weight[k] *= clear;
-            }
-        } else {
-            for k in 0..3 {
-                light[k] *= weight[k];
             }
         }
         let alpha = if pass.nest == 0 { 1.0 } else { 0.0 };
@@ -493,7 +543,11 @@ struct Seen {
 
 /// The rays of these numbers, which of them there are, and t and rank of what they meet.
 #[inline(always)]
-fn meeting<S: Simd>(simd: S, pass: &Pass<'_>, eight: &[u32]) -> (Packet<S>, M<S>, F<S>, [u32; LANES]) {
+pub(super) fn meeting<S: Simd>(
+    simd: S,
+    pass: &Pass<'_>,
+    eight: &[u32],
+) -> (Packet<S>, M<S>, F<S>, [u32; LANES]) {
     let mut numbers = [eight[0]; LANES];
     numbers[..eight.len()].copy_from_slice(eight);
     let desk = &pass.desk;
@@ -504,12 +558,21 @@ fn meeting<S: Simd>(simd: S, pass: &Pass<'_>, eight: &[u32]) -> (Packet<S>, M<S>
 
 /// The materials of what has these ranks.
 #[inline(always)]
-fn looks_of<S: Simd>(simd: S, stream: &Stream, ranks: &[u32; LANES]) -> Looks<S> {
+pub(super) fn looks_of<S: Simd>(simd: S, stream: &Stream, ranks: &[u32; LANES]) -> Looks<S> {
     let materials = eight!(lane => stream.forms.ranks[ranks[lane] as usize].material);
     if materials.iter().all(|material| *material == materials[0]) {
         return Looks::splat(simd, &stream.looks[materials[0]]);
     }
     Looks::of(simd, &eight!(lane => &stream.looks[materials[lane]]))
+}
+
+/// One of the coordinates in the pictures on flat pieces.
+#[inline(always)]
+fn picture_place<S: Simd>(simd: S, ranks: &[&Rank; LANES], axis: usize, [u, v]: [F<S>; 2]) -> F<S> {
+    let [start, along_u, along_v] = channels!(k => {
+        F::load_array(simd, eight!(lane => ranks[lane].texture[k].to_array()[axis]))
+    });
+    start + u * along_u + v * along_v
 }
 
 /// The numbers of what has these ranks.
@@ -547,7 +610,7 @@ impl<'a, S: Simd> Numbers<'a, S> {
 
 /// How far places may be from where other rays meet them, by the rounding of their coordinates.
 #[inline(always)]
-fn rounding<S: Simd>(simd: S, rays: &Packet<S>, point: V<S>) -> F<S> {
+pub(super) fn rounding<S: Simd>(simd: S, rays: &Packet<S>, point: V<S>) -> F<S> {
     let o = rays.origin;
     let sum = V { x: o.x.abs() + point.x.abs(), y: o.y.abs() + point.y.abs(), z: o.z.abs() + point.z.abs() };
     sum.largest() * F::splat(simd, 8.0 * f64::EPSILON)
@@ -555,7 +618,7 @@ fn rounding<S: Simd>(simd: S, rays: &Packet<S>, point: V<S>) -> F<S> {
 
 /// Eight vectors side by side.
 #[inline(always)]
-fn lanes_from<S: Simd>(simd: S, vectors: &[DVec3; LANES]) -> V<S> {
+pub(super) fn lanes_from<S: Simd>(simd: S, vectors: &[DVec3; LANES]) -> V<S> {
     V {
         x: F::load_array(simd, eight!(lane => vectors[lane].x)),
         y: F::load_array(simd, eight!(lane => vectors[lane].y)),

@@ -7,10 +7,10 @@ use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use senca_math::glam::DVec3;
 
 /// Rays that are handled at once.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
-pub(super) type F<S> = f64x8<S>;
-pub(super) type M<S> = mask64x8<S>;
+pub(crate) type F<S> = f64x8<S>;
+pub(crate) type M<S> = mask64x8<S>;
 
 // Written out, since the closures of array functions are compiled by themselves, without the vector
 // instructions of where they are called.
@@ -34,7 +34,7 @@ macro_rules! channels {
         ]
     };
 }
-pub(super) use channels;
+pub(crate) use channels;
 
 /// The expression for every lane.
 macro_rules! eight {
@@ -75,45 +75,45 @@ macro_rules! eight {
         ]
     };
 }
-pub(super) use eight;
+pub(crate) use eight;
 
 /// Eight vectors of three components.
 #[derive(Clone, Copy)]
-pub(super) struct V<S: Simd> {
-    pub(super) x: F<S>,
-    pub(super) y: F<S>,
-    pub(super) z: F<S>,
+pub(crate) struct V<S: Simd> {
+    pub(crate) x: F<S>,
+    pub(crate) y: F<S>,
+    pub(crate) z: F<S>,
 }
 
 impl<S: Simd> V<S> {
     /// Eight times the same.
     #[inline(always)]
-    pub(super) fn splat(simd: S, v: DVec3) -> Self {
+    pub(crate) fn splat(simd: S, v: DVec3) -> Self {
         Self { x: F::splat(simd, v.x), y: F::splat(simd, v.y), z: F::splat(simd, v.z) }
     }
 
     #[inline(always)]
-    pub(super) fn add(self, other: Self) -> Self {
+    pub(crate) fn add(self, other: Self) -> Self {
         Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
     }
 
     #[inline(always)]
-    pub(super) fn sub(self, other: Self) -> Self {
+    pub(crate) fn sub(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
     }
 
     #[inline(always)]
-    pub(super) fn times(self, factor: F<S>) -> Self {
+    pub(crate) fn times(self, factor: F<S>) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
 
     #[inline(always)]
-    pub(super) fn dot(self, other: Self) -> F<S> {
+    pub(crate) fn dot(self, other: Self) -> F<S> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     #[inline(always)]
-    pub(super) fn cross(self, other: Self) -> Self {
+    pub(crate) fn cross(self, other: Self) -> Self {
         Self {
             x: self.y * other.z - self.z * other.y,
             y: self.z * other.x - self.x * other.z,
@@ -122,23 +122,23 @@ impl<S: Simd> V<S> {
     }
 
     #[inline(always)]
-    pub(super) fn opposite(self) -> Self {
+    pub(crate) fn opposite(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z }
     }
 
     #[inline(always)]
-    pub(super) fn select(mask: M<S>, yes: Self, no: Self) -> Self {
+    pub(crate) fn select(mask: M<S>, yes: Self, no: Self) -> Self {
         Self { x: mask.select(yes.x, no.x), y: mask.select(yes.y, no.y), z: mask.select(yes.z, no.z) }
     }
 
     /// The largest absolute component.
     #[inline(always)]
-    pub(super) fn largest(self) -> F<S> {
+    pub(crate) fn largest(self) -> F<S> {
         larger(larger(self.x.abs(), self.y.abs()), self.z.abs())
     }
 
     #[inline(always)]
-    pub(super) fn to_array(self) -> [DVec3; LANES] {
+    pub(crate) fn to_array(self) -> [DVec3; LANES] {
         let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
         eight!(k => DVec3::new(x[k], y[k], z[k]))
     }
@@ -146,13 +146,13 @@ impl<S: Simd> V<S> {
 
 /// The larger one; `b` where either is no number.
 #[inline(always)]
-pub(super) fn larger<S: Simd>(a: F<S>, b: F<S>) -> F<S> {
+pub(crate) fn larger<S: Simd>(a: F<S>, b: F<S>) -> F<S> {
     a.simd_gt(b).select(a, b)
 }
 
 /// The lanes whose bits are set.
 #[inline(always)]
-pub(super) fn lanes_of(mask: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn lanes_of(mask: u64) -> impl Iterator<Item = usize> {
     bits_of(mask).map(
         #[inline(always)]
         |lane| lane % LANES,
@@ -161,7 +161,7 @@ pub(super) fn lanes_of(mask: u64) -> impl Iterator<Item = usize> {
 
 /// The bits that are set, from the lowest.
 #[inline(always)]
-pub(super) fn bits_of(mask: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn bits_of(mask: u64) -> impl Iterator<Item = usize> {
     let mut left = mask;
     std::iter::from_fn(
         #[inline(always)]
@@ -178,6 +178,6 @@ pub(super) fn bits_of(mask: u64) -> impl Iterator<Item = usize> {
 
 /// The first `count` lanes; all when there are more.
 #[inline(always)]
-pub(super) fn first_lanes<S: Simd>(simd: S, count: usize) -> M<S> {
+pub(crate) fn first_lanes<S: Simd>(simd: S, count: usize) -> M<S> {
     M::from_bitmask(simd, if count >= LANES { 255 } else { (1 << count) - 1 })
 }

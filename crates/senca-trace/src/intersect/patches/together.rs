@@ -1,0 +1,547 @@
+//! From many rays at once to the places where they meet patches.
+//!
+//! The fast twin of the search of one ray. Bounds on all rays of a block, a *beam*, go through the
+//! hierarchy in their place and gather the cells that any of them may meet. Where these are too many, as
+//! for rays that go all ways, the block is divided. Then cell after cell, the nearest first, sixteen rays
+//! at a time are asked whether they meet its box and then its plane, and Newton's method runs for eight
+//! of those that do, side by side.
+//!
+//! Every ray is decided by its own box, plane and steps of Newton's method, with the same bounds as alone,
+//! and of its hits the one counts that comes before all others, so nothing depends on the rays beside it.
+//!
+//! Source of the beams: interval arithmetic on packets, Wald et al. 2006, Boulos et al. 2006.
+
+use fearless_simd::{Simd, f32x16, prelude::*};
+use smallvec::SmallVec;
+
+use super::block::{BLOCK, DIRECTION, FAR, INVERSE, NEAR, RayBlock, WIDE};
+use super::cells::{Cell, MARGIN};
+use super::hierarchy::{Beam, Candidate};
+use super::search::{Hit, Nearest, Newton, SETTLED, Search, WIDEST, settle};
+use super::{PatchSurface, SINGULAR};
+use crate::lanes::{F, LANES, M, V, bits_of, channels, first_lanes, lanes_of, larger};
+use crate::{Counters, Crossing};
+use senca_math::glam::{DVec2, Mat3};
+
+/// Cells that the rays of a block may meet before it is divided into four.
+const MOST_CELLS: usize = 64;
+
+impl PatchSurface {
+    /// The nearest hits of the rays of a block.
+    #[inline(never)]
+    pub(crate) fn closest_of_block<S: Simd>(&self, simd: S, block: &mut RayBlock, counters: &mut Counters) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.search_block::<S, false>(simd, block, counters),
+        );
+    }
+
+    /// Which rays of a block meet anything.
+    #[inline(never)]
+    pub(crate) fn blocked_of_block<S: Simd>(
+        &self,
+        simd: S,
+        block: &mut RayBlock,
+        counters: &mut Counters,
+    ) -> u64 {
+        simd.vectorize(
+            #[inline(always)]
+            || self.search_block::<S, true>(simd, block, counters),
+        );
+        block.hits()
+    }
+
+    /// Places and unit normals of eight crossings, where all are asked for that are of part `part`; `None`
+    /// where they have to be computed one by one.
+    #[inline(always)]
+    pub(crate) fn points_of_eight<S: Simd>(
+        &self,
+        simd: S,
+        part: u32,
+        [u, v]: [F<S>; 2],
+        of_part: M<S>,
+    ) -> Option<[V<S>; 2]> {
+        let jet = self.patches[part as usize].at_eight(simd, u, v)?;
+        let cross = jet.du.cross(jet.dv);
+        let squared = cross.dot(cross);
+        let size = larger(jet.du.dot(jet.du), jet.dv.dot(jet.dv));
+        let regular = squared.simd_gt(F::splat(simd, SINGULAR) * size * size);
+        if (of_part & !regular).any_true() {
+            return None;
+        }
+        let point = V::splat(simd, self.center).add(jet.value.times(F::splat(simd, self.scale)));
+        Some([point, cross.times(F::splat(simd, 1.0) / squared.sqrt())])
+    }
+
+    #[inline(always)]
+    fn search_block<S: Simd, const ANY: bool>(&self, simd: S, block: &mut RayBlock, counters: &mut Counters) {
+        block.prepare(simd, self.center, self.scale);
+        let mut candidates = std::mem::take(&mut block.candidates);
+        let mut bundles: SmallVec<[(u64, usize); 16]> = SmallVec::new();
+        bundles.push((block.live(), BLOCK));
+        while let Some((bundle, width)) = bundles.pop() {
+            if bundle == 0 {
+                continue;
+            }
+            let beam = beam_of(simd, block, bundle);
+            let most = if width > 1 { MOST_CELLS } else { usize::MAX };
+            let out = (&mut candidates, &mut counters.nodes);
+            if self.hierarchy.collect(simd, self.root, &beam, most, out) {
+                self.bundle::<S, ANY>(simd, block, bundle, &mut candidates, counters);
+                continue;
+            }
+            let quarter = width / 4;
+            let ones = u64::MAX >> (64 - quarter);
+            bundles.extend((0..BLOCK / quarter).map(|k| (bundle & ones << (k * quarter), quarter)));
+        }
+        block.candidates = candidates;
+    }
+
+    /// What some of the rays meet in the cells that they may meet.
+    #[inline(always)]
+    fn bundle<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        block: &mut RayBlock,
+        bundle: u64,
+        candidates: &mut [Candidate],
+        counters: &mut Counters,
+    ) {
+        if !ANY {
+            candidates.sort_unstable_by(|a, b| a.near.total_cmp(&b.near));
+        }
+        let mut met = Met::default();
+        let mut open = bundle;
+        let mut farthest = f32::INFINITY;
+        for candidate in &*candidates {
+            if candidate.near > farthest {
+                break;
+            }
+            met.clear();
+            let cell = &self.cells[candidate.cell as usize];
+            for first in (0..BLOCK).step_by(WIDE) {
+                let sixteen = open >> first & 0xffff;
+                if sixteen != 0 {
+                    let near = box_met(simd, block, first, &candidate.sides) & sixteen;
+                    if near != 0 {
+                        counters.tests += u64::from(near.count_ones());
+                        meet_plane(simd, block, first, near, cell, &mut met);
+                    }
+                }
+            }
+            if met.len == 0 && met.unknown == 0 {
+                continue;
+            }
+            for first in (0..met.len).step_by(LANES) {
+                self.newton_eight(simd, block, cell, &mut met, first, ANY);
+            }
+            for lane in bits_of(met.unknown) {
+                self.alone(simd, block, lane, cell, ANY);
+            }
+            if ANY {
+                open &= !block.hits();
+                if open == 0 {
+                    return;
+                }
+            } else {
+                farthest = greatest(simd, &block.single[FAR], bundle);
+            }
+        }
+    }
+
+    /// A ray in a cell of which vectors say nothing certain.
+    #[cold]
+    #[inline(never)]
+    fn alone<S: Simd>(&self, simd: S, block: &mut RayBlock, lane: usize, cell: &Cell, any: bool) {
+        let ray = block.ray(lane);
+        let mut search =
+            Search { surface: self, ray: &ray, local: block.line(lane), wanted: Nearest(None), tests: 0 };
+        search.alone(simd, cell);
+        if let Some(hit) = search.wanted.0 {
+            block.take_alone(lane, &hit, any);
+        }
+    }
+
+    /// A ray in a cell in which Newton's method does not end, or ends beyond what is known.
+    #[cold]
+    #[inline(never)]
+    fn divide(&self, block: &mut RayBlock, lane: usize, cell: &Cell, any: bool) {
+        let ray = block.ray(lane);
+        let mut search =
+            Search { surface: self, ray: &ray, local: block.line(lane), wanted: Nearest(None), tests: 0 };
+        search.divide(cell);
+        if let Some(hit) = search.wanted.0 {
+            block.take_alone(lane, &hit, any);
+        }
+    }
+
+    /// Newton's method for eight rays in a cell: the twin of that of one ray.
+    #[inline(always)]
+    fn newton_eight<S: Simd>(
+        &self,
+        simd: S,
+        block: &mut RayBlock,
+        cell: &Cell,
+        met: &mut Met,
+        first: usize,
+        any: bool,
+    ) {
+        let count = (met.len - first).min(LANES);
+        let lanes = met.lanes(first);
+        let patch = &self.patches[cell.patch as usize];
+        if !patch.is_cubic() {
+            for &lane in &lanes[..count] {
+                self.alone(simd, block, usize::from(lane), cell, any);
+            }
+            return;
+        }
+        let domain = cell.domain();
+        let (center, half) = (domain.center(), domain.half());
+        let (center_u, center_v) = (F::splat(simd, center.x), F::splat(simd, center.y));
+        let (half_u, half_v) = (F::splat(simd, half.x), F::splat(simd, half.y));
+        let [o, d] = block.lines(simd, &lanes);
+        let mut u = center_u + half_u * met.near(simd, 0, first);
+        let mut v = center_v + half_v * met.near(simd, 1, first);
+        let mut open = first_lanes(simd, count);
+        let mut settled = M::splat(simd, false);
+        let zero = F::splat(simd, 0.0);
+        let (mut distance, mut error_u, mut error_v) = (zero, zero, zero);
+        for _ in 0..10 {
+            let Some(jet) = patch.at_eight(simd, u, v) else { break };
+            let normal = jet.du.cross(jet.dv);
+            let offset = o.sub(jet.value);
+            let inverse = F::splat(simd, 1.0) / d.dot(normal);
+            let moment = d.cross(offset);
+            let step_u = jet.dv.dot(moment) * inverse;
+            let step_v = -jet.du.dot(moment) * inverse;
+            u = open.select(u + step_u, u);
+            v = open.select(v + step_v, v);
+            let small = step_u.abs().simd_le(F::splat(simd, SETTLED) * half_u)
+                & step_v.abs().simd_le(F::splat(simd, SETTLED) * half_v);
+            let now = open & small;
+            if now.any_true() {
+                distance = now.select(-offset.dot(normal) * inverse, distance);
+                error_u = now.select(jet.dv.dot(jet.dv).sqrt() * inverse.abs(), error_u);
+                error_v = now.select(jet.du.dot(jet.du).sqrt() * inverse.abs(), error_v);
+                settled |= now;
+            }
+            let near = (u - center_u).abs().simd_le(F::splat(simd, 4.0) * half_u)
+                & (v - center_v).abs().simd_le(F::splat(simd, 4.0) * half_v);
+            open &= !small & near;
+            if !open.any_true() {
+                break;
+            }
+        }
+        // Most are well within the cell, or well without; the others are near its border.
+        let (off_u, off_v) = ((u - center_u).abs() - half_u, (v - center_v).abs() - half_v);
+        let widest = F::splat(simd, WIDEST);
+        let within = settled & off_u.simd_lt(-widest) & off_v.simd_lt(-widest);
+        let in_margin =
+            off_u.simd_lt(F::splat(simd, MARGIN) * half_u) & off_v.simd_lt(F::splat(simd, MARGIN) * half_v);
+        let outside = settled & in_margin & (off_u.simd_gt(widest) | off_v.simd_gt(widest));
+        let all = (1u64 << count) - 1;
+        let left = all & !(within | outside).to_bitmask();
+        let numbers = [u.to_array(), v.to_array(), distance.to_array()];
+        block.take(&lanes, within.to_bitmask(), cell.patch, numbers, any);
+        if left != 0 {
+            let errors = [error_u.to_array(), error_v.to_array()];
+            let settled = settled.to_bitmask();
+            for k in lanes_of(left) {
+                let [u, v, distance] = channels!(i => numbers[i][k]);
+                let end = (settled >> k & 1 == 1).then_some((DVec2::new(u, v), distance));
+                self.at_border(block, usize::from(lanes[k]), cell, end, [errors[0][k], errors[1][k]], any);
+            }
+        }
+    }
+
+    /// A ray for which Newton's method ended near the border of a cell, or not at all.
+    #[cold]
+    #[inline(never)]
+    fn at_border(
+        &self,
+        block: &mut RayBlock,
+        lane: usize,
+        cell: &Cell,
+        end: Option<(DVec2, f64)>,
+        errors: [f64; 2],
+        any: bool,
+    ) {
+        let lane = lane % BLOCK;
+        let settled = end.map(|(uv, distance)| settle(cell, uv, || DVec2::from_array(errors), distance, 1.0));
+        match settled {
+            Some(Newton::Outside) => {}
+            Some(Newton::Inside { root, distance }) => {
+                let t = block.line(lane).parameter(distance);
+                if block.ray(lane).admits(t) {
+                    let crossing = Crossing { t, part: cell.patch, uv: root.uv };
+                    let hit = Hit { crossing, distance, sign: 1.0 };
+                    block.take_alone(lane, &hit, any);
+                }
+            }
+            Some(Newton::Lost) | None => self.divide(block, lane, cell, any),
+        }
+    }
+}
+
+/// Rays of which is known that they meet a cell at most once.
+struct Met {
+    /// Their numbers, and where in the frame of the cell, about.
+    numbers: [u8; BLOCK + LANES],
+    near: [[f32; BLOCK + LANES]; 2],
+    len: usize,
+    /// Rays of which nothing is known.
+    unknown: u64,
+}
+
+impl Default for Met {
+    fn default() -> Self {
+        Self { numbers: [0; BLOCK + LANES], near: [[0.0; BLOCK + LANES]; 2], len: 0, unknown: 0 }
+    }
+}
+
+impl Met {
+    #[inline(always)]
+    fn clear(&mut self) {
+        (self.len, self.unknown) = (0, 0);
+    }
+
+    /// Eight numbers from `first` on; behind the last there is the last again.
+    #[inline(always)]
+    fn lanes(&self, first: usize) -> [u8; LANES] {
+        let mut lanes = [self.numbers[first]; LANES];
+        let count = (self.len - first).min(LANES);
+        lanes[..count].copy_from_slice(&self.numbers[first..][..count]);
+        lanes
+    }
+
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, k: usize, first: usize) -> F<S> {
+        F::from_fn(
+            simd,
+            #[inline(always)]
+            |lane| f64::from(self.near[k][first + lane]),
+        )
+    }
+}
+
+#[inline(always)]
+fn row<S: Simd>(simd: S, block: &RayBlock, k: usize, first: usize) -> f32x16<S> {
+    f32x16::from_slice(simd, &block.single[k][first..][..WIDE])
+}
+
+/// Which of sixteen rays meet a box before the end of their interest.
+#[inline(always)]
+fn box_met<S: Simd>(simd: S, block: &RayBlock, first: usize, sides: &[[f32; 2]; 3]) -> u64 {
+    let (mut near, mut far) = (row(simd, block, NEAR, first), row(simd, block, FAR, first));
+    for (axis, [low, high]) in sides.iter().enumerate() {
+        let (origin, inverse) = (row(simd, block, axis, first), row(simd, block, INVERSE + axis, first));
+        let low = (f32x16::splat(simd, *low) - origin) * inverse;
+        let high = (f32x16::splat(simd, *high) - origin) * inverse;
+        near = near.max(low.min(high));
+        far = far.min(low.max(high));
+    }
+    near.simd_le(far).to_bitmask()
+}
+
+/// What the plane of a cell tells about sixteen rays: see [`Cell::meets`].
+#[inline(always)]
+fn meet_plane<S: Simd>(simd: S, block: &RayBlock, first: usize, rays: u64, cell: &Cell, met: &mut Met) {
+    let rows = rows_of(&cell.local_from_object);
+    let center = cell.center.to_array();
+    let [ox, oy, oz] = channels!(k => row(simd, block, k, first) - f32x16::splat(simd, center[k]));
+    let [dx, dy, dz] = channels!(k => row(simd, block, DIRECTION + k, first));
+    let o = channels!(k => along(simd, rows[k], [ox, oy, oz]));
+    let d = channels!(k => along(simd, rows[k], [dx, dy, dz]));
+    let fall = f32x16::splat(simd, 1.0) / d[2];
+    let (slope_x, slope_y) = (d[0] * fall, d[1] * fall);
+    let (x, y) = (o[0] - o[2] * slope_x, o[1] - o[2] * slope_y);
+    let tilt = f32x16::splat(simd, cell.tilt);
+    let reach_x = f32x16::splat(simd, cell.spread.x) + tilt * slope_x.abs();
+    let reach_y = f32x16::splat(simd, cell.spread.y) + tilt * slope_y.abs();
+    // Not a number when a ray runs along the plane.
+    let least = f32x16::splat(simd, 0.95);
+    let once = (reach_x.simd_lt(least) & reach_y.simd_lt(least)).to_bitmask() & rays;
+    met.unknown |= (rays & !once) << first;
+    let (inner, one) = (f32x16::splat(simd, cell.inner), f32x16::splat(simd, 1.0));
+    let inside = (x.abs() - inner * reach_x).simd_le(one) & (y.abs() - inner * reach_y).simd_le(one);
+    let inside = inside.to_bitmask() & once;
+    if inside == 0 {
+        return;
+    }
+    let (x, y): ([f32; WIDE], [f32; WIDE]) = (x.into(), y.into());
+    for k in bits_of(inside) {
+        let (k, len) = (k % WIDE, met.len % BLOCK);
+        met.numbers[len] = (first + k) as u8;
+        met.near[0][len] = x[k];
+        met.near[1][len] = y[k];
+        met.len = len + 1;
+    }
+}
+
+/// The rows of a matrix.
+#[inline(always)]
+fn rows_of(m: &Mat3) -> [[f32; 3]; 3] {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+    [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]]
+}
+
+/// A row of a matrix times sixteen vectors.
+#[inline(always)]
+fn along<S: Simd>(simd: S, row: [f32; 3], [x, y, z]: [f32x16<S>; 3]) -> f32x16<S> {
+    f32x16::splat(simd, row[0]) * x + f32x16::splat(simd, row[1]) * y + f32x16::splat(simd, row[2]) * z
+}
+
+/// The greatest number of a row among some rays.
+#[inline(always)]
+fn greatest<S: Simd>(simd: S, row: &[f32; BLOCK], rays: u64) -> f32 {
+    let mut most = f32x16::splat(simd, f32::NEG_INFINITY);
+    for first in (0..BLOCK).step_by(WIDE) {
+        let among = among::<S>(simd, rays, first);
+        let values = f32x16::from_slice(simd, &row[first..][..WIDE]);
+        most = among.select(values, most).max(most);
+    }
+    most.reduce_max()
+}
+
+/// The least and the greatest number of a row among some rays.
+#[inline(always)]
+fn ends<S: Simd>(simd: S, row: &[f32; BLOCK], rays: u64) -> [f32; 2] {
+    let mut least = f32x16::splat(simd, f32::INFINITY);
+    let mut most = f32x16::splat(simd, f32::NEG_INFINITY);
+    for first in (0..BLOCK).step_by(WIDE) {
+        if rays >> first & 0xffff == 0 {
+            continue;
+        }
+        let among = among::<S>(simd, rays, first);
+        let values = f32x16::from_slice(simd, &row[first..][..WIDE]);
+        least = among.select(values, least).min(least);
+        most = among.select(values, most).max(most);
+    }
+    [least.reduce_min(), most.reduce_max()]
+}
+
+#[inline(always)]
+fn among<S: Simd>(simd: S, rays: u64, first: usize) -> fearless_simd::mask32x16<S> {
+    fearless_simd::mask32x16::from_bitmask(simd, rays >> first & 0xffff)
+}
+
+/// [`ends`] of three rows.
+#[inline(always)]
+fn ends_of_three<S: Simd>(simd: S, block: &RayBlock, k: usize, rays: u64) -> [[f32; 3]; 2] {
+    let axes = channels!(axis => ends(simd, &block.single[k + axis], rays));
+    [channels!(axis => axes[axis][0]), channels!(axis => axes[axis][1])]
+}
+
+/// Bounds on some rays of a block.
+#[inline(always)]
+fn beam_of<S: Simd>(simd: S, block: &RayBlock, rays: u64) -> Beam {
+    Beam {
+        origin: ends_of_three(simd, block, 0, rays),
+        inverse: ends_of_three(simd, block, INVERSE, rays),
+        direction: ends_of_three(simd, block, DIRECTION, rays),
+        near: ends(simd, &block.single[NEAR], rays)[0],
+        far: greatest(simd, &block.single[FAR], rays),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+    use senca_math::glam::DVec3;
+
+    use super::*;
+    use crate::Ray;
+    use crate::intersect::Intersect;
+    use crate::intersect::patches::tests::{ball, rays_around, surface, teapot};
+
+    /// The rays, up to 64, as a block.
+    fn block<S: Simd>(simd: S, rays: &[Ray]) -> RayBlock {
+        let mut block = RayBlock::default();
+        for (number, rays) in rays.chunks(LANES).enumerate() {
+            let ray = |lane: usize| rays[lane.min(rays.len() - 1)];
+            let row = |of: &dyn Fn(Ray) -> f64| F::from_fn(simd, |lane| of(ray(lane)));
+            let vector = |of: &dyn Fn(Ray) -> DVec3| V {
+                x: row(&|ray| of(ray).x),
+                y: row(&|ray| of(ray).y),
+                z: row(&|ray| of(ray).z),
+            };
+            let limits = [row(&|ray| ray.t_min), row(&|ray| ray.t_max)];
+            let live = first_lanes(simd, rays.len());
+            block.put(number, [vector(&|ray| ray.origin), vector(&|ray| ray.direction)], limits, live);
+        }
+        block
+    }
+
+    fn nearest(surface: &PatchSurface, rays: &[Ray], level: Level) -> Vec<Option<Crossing>> {
+        dispatch!(level, simd => {
+            let mut block = block(simd, rays);
+            surface.closest_of_block(simd, &mut block, &mut Counters::default());
+            (0..rays.len()).map(|lane| (block.hits() >> lane & 1 == 1).then(|| block.crossing(lane))).collect()
+        })
+    }
+
+    /// Hit for hit what rays alone find, and the same whatever rays are beside them.
+    fn assert_agree(surface: &PatchSurface, rays: &[Ray]) -> usize {
+        let mut met = 0;
+        for rays in rays.chunks(BLOCK) {
+            let found = nearest(surface, rays, Level::new());
+            assert!(found == nearest(surface, rays, Level::baseline()), "levels of vectors differ");
+            let blocked = dispatch!(Level::new(), simd => {
+                surface.blocked_of_block(simd, &mut block(simd, rays), &mut Counters::default())
+            });
+            for (lane, (ray, found)) in rays.iter().zip(&found).enumerate() {
+                let alone = surface.closest(ray, &mut Counters::default());
+                assert_eq!(alone.is_some(), found.is_some(), "{ray:?}");
+                assert_eq!(alone.is_some(), blocked >> lane & 1 == 1, "{ray:?}");
+                assert_eq!(nearest(surface, &[*ray], Level::new()), [*found], "{ray:?}");
+                if let (Some(alone), Some(found)) = (alone, found) {
+                    let scale = surface.scale / ray.direction.length();
+                    assert!((alone.t - found.t).abs() < 1e-9 * scale.max(alone.t), "{alone:?} {found:?}");
+                    met += 1;
+                }
+            }
+        }
+        met
+    }
+
+    #[test]
+    fn rays_all_ways_meet_what_they_meet_alone() {
+        let rays: Vec<Ray> = rays_around(1200).collect();
+        assert!(assert_agree(&surface(&teapot()), &rays) > 100);
+        assert!(assert_agree(&PatchSurface::from_nurbs(&ball(3.0)).unwrap(), &rays) > 100);
+    }
+
+    #[test]
+    fn rays_of_a_picture_meet_what_they_meet_alone() {
+        let teapot = surface(&teapot());
+        let eye = DVec3::new(2.0, -9.0, 4.0);
+        let forward = (DVec3::Z - eye).normalize();
+        let (right, up) = forward.any_orthonormal_pair();
+        let ray = |i: usize| {
+            let (x, y) = ((i % 40) as f64 / 20.0 - 1.0, (i / 40) as f64 / 20.0 - 1.0);
+            Ray::new(eye, forward + 0.8 * (x * right + y * up))
+        };
+        let rays: Vec<Ray> = (0..1600).map(ray).collect();
+        assert!(assert_agree(&teapot, &rays) > 0);
+    }
+
+    #[test]
+    fn bad_rays_of_a_block_meet_nothing() {
+        let teapot = surface(&teapot());
+        let (o, d) = (DVec3::new(0.0, -9.0, 1.0), DVec3::Y);
+        let bad = f64::NAN;
+        let rays = [
+            Ray::new(o * bad, d),
+            Ray::new(o, d * bad),
+            Ray::new(o, DVec3::ZERO),
+            Ray::new(o, d * f64::INFINITY),
+            Ray { t_min: bad, ..Ray::new(o, d) },
+            Ray { t_max: -1.0, ..Ray::new(o, d) },
+            Ray::new(o * 1e300, d * 1e-300),
+            Ray::new(o, d),
+            Ray::new(o, d * 1e-200),
+            Ray::new(o, d * 1e150),
+        ];
+        assert_eq!(assert_agree(&teapot, &rays), 3);
+    }
+}
