@@ -111,7 +111,7 @@ pub(crate) fn copy_lamps(scene: &Scene, to: &mut Scene) {
         let Some(material) = geometry.material else { continue };
         let material = Some(to.add_material(scene.materials[material.index()].clone()));
         let geometry = Some(to.add_geometry(Geometry { material, ..geometry.clone() }));
-        let node = to.add_node(Node { transform: node.transform.clone(), geometry, ..Node::default() });
+        let node = to.add_node(Node { transform: node.transform, geometry, ..Node::default() });
         to.roots.push(node);
     }
 }

@@ -151,10 +151,10 @@ impl Shots {
                 self.unsent[j][c] += rho[c] * share * light[c];
             });
         }
-        for c in 0..3 {
+        (0..3).for_each(|c| {
             self.sent[c] += area * light[c];
             self.lost[c] += open.max(0.0) * light[c];
-        }
+        });
         self.steps += 1;
     }
 

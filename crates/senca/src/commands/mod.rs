@@ -35,9 +35,9 @@ enum Command {
     /// Prints the partial matrices of a viewing operation and their product
     ViewMatrix(view_matrix::Arguments),
     /// Bakes the light of a scene into a model that other programs show
-    Bake(bake::Arguments),
+    Bake(Box<bake::Arguments>),
     /// Measures illuminance in lux on a plane
-    Lux(lux::Arguments),
+    Lux(Box<lux::Arguments>),
     /// Compares the methods for form factors on a known pair, or on a scene's patches
     FormFactor(form_factor::Arguments),
     /// Measures this program on data it makes itself
