@@ -63,7 +63,7 @@ impl Network {
     }
 
     /// Light that arrives at each element by all links to it and to what holds it. The values of
-    /// divided elements are not of use.
+    /// divided elements are not of use. Elements that are newer than the network have what holds them.
     pub(super) fn gather(&self, parts: &Parts<'_>, state: &State) -> Vec<Vec4> {
         let arrivals = self.arrivals(parts, state);
         let polygons = parts.mesh.polygons().len();
@@ -71,6 +71,9 @@ impl Network {
             .into_par_iter()
             .with_min_len(GRAIN)
             .map(|element| {
+                if element + 1 >= self.element_start.len() {
+                    return Vec4::ZERO;
+                }
                 let own = self.at_element(element, parts, state);
                 if element < polygons { own + self.at_polygon(element, parts, &arrivals) } else { own }
             })

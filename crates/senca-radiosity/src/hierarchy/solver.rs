@@ -202,6 +202,7 @@ impl<'a> Solver<'a> {
         let finer = 2f64.powi((self.settings.rounds - 1 - round) as i32);
         let last = round + 1 == self.settings.rounds;
         if !self.refine(self.settings.threshold * self.power * finer) {
+            self.state.keep_lost(&self.mesh);
             return false;
         }
         self.light_new_leaves();

@@ -80,6 +80,16 @@ impl State {
         }
     }
 
+    /// Gives elements for which it is not known yet the loss of what they are part of.
+    pub(super) fn keep_lost(&mut self, mesh: &ElementMesh) {
+        for number in 0..self.lost.len() {
+            let parent = mesh.elements()[number].parent as usize;
+            if self.lost[number].is_nan() && parent < number {
+                self.lost[number] = self.lost[parent];
+            }
+        }
+    }
+
     /// Sums what polygons send over the clusters that hold them.
     pub(super) fn gather_moments(&mut self, mesh: &ElementMesh, clusters: &Clusters) {
         self.moments.fill(Moments::default());

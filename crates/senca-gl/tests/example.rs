@@ -1,12 +1,23 @@
-//! The commands that `docs/opengl.md` shows for the example `book` work.
+//! The commands that `docs/opengl.md` shows for the example `opengl` work.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
-/// The example, which a test run builds beside the tests.
-fn example() -> PathBuf {
-    let tests = std::env::current_exe().unwrap();
-    tests.parent().and_then(Path::parent).unwrap().join("examples").join("book")
+/// The example, which is built now if it is not up to date.
+fn example() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        let mut build = Command::new(env!("CARGO"));
+        build.args(["build", "--quiet", "-p", "senca-gl", "--example", "opengl"]);
+        let release = !cfg!(debug_assertions);
+        if release {
+            build.arg("--release");
+        }
+        assert!(build.status().unwrap().success(), "the example builds");
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+        target.join(if release { "release" } else { "debug" }).join("examples/opengl")
+    })
 }
 
 /// Arguments of a command of the document; what stands in quotes is one.
@@ -24,7 +35,7 @@ fn arguments(command: &str) -> Vec<String> {
 fn the_documents_commands_draw_pictures() {
     let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/opengl.md");
     let text = std::fs::read_to_string(document).unwrap();
-    let start = "cargo run --release -p senca-gl --example book -- ";
+    let start = "cargo run --release -p senca-gl --example opengl -- ";
     let commands: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix(start)).collect();
     assert!(commands.len() >= 3, "{commands:?}");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));

@@ -1,6 +1,6 @@
 //! The sample programs and exercises of the course text, chapter 5, drawn without a window.
 //!
-//! `cargo run --release -p senca-gl --example book -- surface --out surface.png`
+//! `cargo run --release -p senca-gl --example opengl -- surface --out surface.png`
 
 mod exercises;
 mod letters;
