@@ -88,12 +88,14 @@ fn only_commands_are_exported() {
     assert!(output("readelf", &["-d"]).contains("soname: [libOSMesa.so.8]"));
 }
 
-/// Commands of the `sh` blocks of `docs/opengl.md`, in their order.
+/// Commands of the `sh` blocks of `docs/opengl.md`, in their order. Those of examples run in the tests of
+/// `senca-gl`.
 fn commands_of_the_document() -> Vec<String> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let text = std::fs::read_to_string(repository.join("docs/opengl.md")).unwrap();
     let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
-    blocks.flat_map(str::lines).map(str::to_owned).collect()
+    let commands = blocks.flat_map(str::lines).filter(|line| !line.contains("--example"));
+    commands.map(str::to_owned).collect()
 }
 
 #[test]
