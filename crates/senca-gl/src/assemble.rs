@@ -7,12 +7,13 @@ use crate::raster_state::Kind;
 use crate::vertex::{Plan, Processed};
 use crate::{Context, Enum, gl};
 use senca_math::glam::Vec4;
+use smallvec::SmallVec;
 
 /// A vertex on its own.
 #[derive(Clone, Debug)]
 pub(crate) struct Vertex {
     pub(crate) position: Vec4,
-    pub(crate) varyings: Vec<f32>,
+    pub(crate) varyings: SmallVec<[f32; 12]>,
     back: [f32; 7],
     eye: Vec4,
     /// Whether the edge to the next vertex is a boundary.
@@ -24,7 +25,7 @@ impl Vertex {
     fn of(p: &Processed, i: usize, stride: usize) -> Self {
         Self {
             position: p.positions[i],
-            varyings: p.varyings[i * stride..(i + 1) * stride].to_vec(),
+            varyings: SmallVec::from_slice(&p.varyings[i * stride..(i + 1) * stride]),
             back: p.back.get(i).copied().unwrap_or_default(),
             eye: p.eye.get(i).copied().unwrap_or_default(),
             edge: p.edges.get(i).copied().unwrap_or(true),

@@ -52,7 +52,6 @@ impl Context {
                 self.settle_color_material();
             }
             self.state.enabled.set(bit, n, on);
-            self.switch_debug();
             return self.touch();
         }
         let unit = &mut self.state.texturing.units[self.state.texturing.active];

@@ -167,7 +167,7 @@ impl Context {
         if self.error == gl::NO_ERROR {
             self.error = code;
         }
-        self.debug.note_error(code);
+        self.note_error(code);
     }
 
     /// `glGetError`: what went wrong first since it was last asked, and forgets it. `INVALID_OPERATION` between

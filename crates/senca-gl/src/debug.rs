@@ -1,5 +1,6 @@
 //! Messages for whoever debugs a program (KHR_debug): the group stack, labels, the log and its callback.
 
+use crate::state::Cap;
 use crate::{Context, Enum, gl};
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
@@ -53,7 +54,6 @@ impl Rule {
 /// State of KHR_debug.
 #[derive(Default)]
 pub(crate) struct Debug {
-    on: bool,
     callback: Option<DebugCallback>,
     log: VecDeque<DebugMessage>,
     rules: Vec<Rule>,
@@ -69,10 +69,7 @@ impl std::fmt::Debug for Debug {
 
 impl Debug {
     /// An error of the program.
-    pub(crate) fn note_error(&mut self, code: Enum) {
-        if !self.on {
-            return;
-        }
+    fn note_error(&mut self, code: Enum) {
         let text = match code {
             gl::INVALID_ENUM => "GL_INVALID_ENUM: a name that this command does not take",
             gl::INVALID_VALUE => "GL_INVALID_VALUE: a number out of range",
@@ -95,7 +92,7 @@ impl Debug {
         let rule = self.rules.iter().rev().find(|r| r.fits(&message));
         // Messages of low severity are off unless asked for.
         let wanted = rule.map_or(message.severity != gl::DEBUG_SEVERITY_LOW, |r| r.on);
-        if !self.on || !wanted {
+        if !wanted {
             return;
         }
         match &self.callback {
@@ -136,19 +133,31 @@ fn is_severity(severity: Enum) -> bool {
 }
 
 impl Context {
+    /// Tells of an error where messages are wanted.
+    pub(crate) fn note_error(&mut self, code: Enum) {
+        if self.debugs() {
+            self.debug.note_error(code);
+        }
+    }
+
+    fn debugs(&self) -> bool {
+        self.state.enabled.has(Cap::DebugOutput)
+    }
+
+    /// A message, where messages are wanted.
+    fn message(&mut self, message: DebugMessage) {
+        if self.debugs() {
+            self.debug.message(message);
+        }
+    }
+
     /// `glDebugMessageCallback`: what is called with each message from now on, instead of the log.
     pub fn debug_message_callback(&mut self, callback: Option<DebugCallback>) {
         self.debug.callback = callback;
     }
 
-    /// Follows `DEBUG_OUTPUT`.
-    pub(crate) fn switch_debug(&mut self) {
-        self.debug.on = self.state.enabled.has(crate::state::Cap::DebugOutput);
-    }
-
     /// `glDebugMessageControl`.
     pub fn debug_message_control(&mut self, source: Enum, kind: Enum, severity: Enum, ids: &[u32], on: bool) {
-        self.switch_debug();
         let any = gl::DONT_CARE;
         let valid = (source == any || is_source(source, false))
             && (kind == any || is_type(kind))
@@ -167,14 +176,13 @@ impl Context {
 
     /// `glDebugMessageInsert`: a message of the program's own.
     pub fn debug_message_insert(&mut self, source: Enum, kind: Enum, id: u32, severity: Enum, text: &str) {
-        self.switch_debug();
         if !is_source(source, true) || !is_type(kind) || !is_severity(severity) {
             return self.error(gl::INVALID_ENUM);
         }
         if text.len() >= MAX_MESSAGE {
             return self.error(gl::INVALID_VALUE);
         }
-        self.debug.message(DebugMessage { source, kind, id, severity, text: text.to_owned() });
+        self.message(DebugMessage { source, kind, id, severity, text: text.to_owned() });
     }
 
     /// `glGetDebugMessageLog`: takes the oldest message out of the log, if it and its closing zero fit `room` bytes.
@@ -185,7 +193,6 @@ impl Context {
 
     /// `glPushDebugGroup`.
     pub fn push_debug_group(&mut self, source: Enum, id: u32, text: &str) {
-        self.switch_debug();
         if !is_source(source, true) {
             return self.error(gl::INVALID_ENUM);
         }
@@ -198,13 +205,12 @@ impl Context {
         let severity = gl::DEBUG_SEVERITY_NOTIFICATION;
         let kind = gl::DEBUG_TYPE_PUSH_GROUP;
         let message = DebugMessage { source, kind, id, severity, text: text.to_owned() };
-        self.debug.message(message.clone());
+        self.message(message.clone());
         self.debug.groups.push((message, self.debug.rules.len()));
     }
 
     /// `glPopDebugGroup`.
     pub fn pop_debug_group(&mut self) {
-        self.switch_debug();
         let Some((mut message, rules)) = self.debug.groups.pop() else {
             return self.error(gl::STACK_UNDERFLOW);
         };

@@ -71,5 +71,8 @@ pub use window::{Colors, max_window_side};
 
 #[cfg(test)]
 mod image_fuzz;
+// The example's programs, which name this crate, are drawn by the tests, too.
+#[cfg(test)]
+extern crate self as senca_gl;
 #[cfg(test)]
 mod tests;

@@ -1,36 +1,20 @@
 //! The sample programs and worked examples of the course text, chapter 5, against the positions they have.
 
+#[path = "../../examples/opengl/samples.rs"]
+mod programs;
+
 use super::context;
 use crate::{Context, gl};
 use senca_math::glam::Vec4;
 
-/// The text's way to keep the scale alike on both axes: at least [-half, half] on each.
-fn ortho_about(c: &mut Context, [width, height]: [u32; 2], half: f64, near: f64, far: f64) {
-    let (w, h) = (f64::from(width), f64::from(height));
-    let [x, y] = if w <= h { [half, half * h / w] } else { [half * w / h, half] };
+/// A window with what a sample program draws.
+fn drawn([width, height]: [u32; 2], program: impl Fn(&mut Context, f64)) -> Context {
+    let mut c = context(width, height);
     c.viewport(0, 0, width as i32, height as i32);
-    c.matrix_mode(gl::PROJECTION);
-    c.load_identity();
-    c.ortho(-x, x, -y, y, near, far);
-    c.matrix_mode(gl::MODELVIEW);
-    c.load_identity();
-}
-
-/// Section 5.4: a green segment to the left, a magenta one to the upper right.
-fn first_program(size: [u32; 2]) -> Context {
-    let mut c = context(size[0], size[1]);
-    ortho_about(&mut c, size, 10.0, -1.0, 1.0);
     c.clear_color([0.0, 0.0, 0.0, 1.0]);
-    c.clear(gl::COLOR_BUFFER_BIT);
-    c.begin(gl::LINES);
-    c.color([0.0f32, 1.0, 0.0]);
-    c.vertex([0.0f32, 0.0, 0.0]);
-    c.vertex([-9.0f32, 0.0, 0.0]);
-    c.color([1.0f32, 0.0, 1.0]);
-    c.vertex([0.0f32, 0.0, 0.0]);
-    c.vertex([9.0f32, 9.0, 0.0]);
-    c.end();
-    c.flush();
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    program(&mut c, f64::from(width) / f64::from(height));
+    c.finish();
     c
 }
 
@@ -39,7 +23,7 @@ fn the_first_program_draws_two_segments() {
     for (size, centre) in
         [([300u32, 300u32], [150usize, 150usize]), ([600, 300], [300, 150]), ([300, 600], [150, 300])]
     {
-        let c = first_program(size);
+        let c = drawn(size, programs::first);
         let at = |x: usize, y: usize| c.window_pixels()[y * size[0] as usize + x];
         let (green, magenta, black) = ([0, 255, 0, 255], [255, 0, 255, 255], [0, 0, 0, 255]);
         let [x, y] = centre;
@@ -91,32 +75,20 @@ fn a_string_is_a_row_of_lists() {
     assert_eq!(c.get_error(), gl::NO_ERROR);
 }
 
-fn curve(c: &mut Context) {
-    let points = [-4.0, -4.0, 0.0, -2.0, 4.0, 0.0, 2.0, -4.0, 0.0, 4.0, 4.0, 0.0];
-    ortho_about(c, [400, 400], 5.0, -1.0, 1.0);
-    c.map1(gl::MAP1_VERTEX_3, [0.0, 1.0], 3, 4, &points);
-    c.enable(gl::MAP1_VERTEX_3);
-    c.color([1.0, 1.0, 1.0]);
-}
-
 /// Section 5.9, the Bézier curve: the mesh and the single coordinates give the same picture, at the places computed.
 #[test]
 fn the_curve_passes_its_points_either_way() {
-    let mut one = context(400, 400);
-    curve(&mut one);
-    one.begin(gl::LINE_STRIP);
-    (0..=30).for_each(|i| one.eval_coord1(i as f32 / 30.0));
-    one.end();
-    one.finish();
-    let mut mesh = context(400, 400);
-    curve(&mut mesh);
+    let one = drawn([400, 400], programs::curve);
+    // The same maps, matrices and colour; what is drawn already is cleared.
+    let mut mesh = drawn([400, 400], programs::curve);
+    mesh.clear(gl::COLOR_BUFFER_BIT);
     mesh.map_grid1(30, [0.0, 1.0]);
     mesh.eval_mesh1(gl::LINE, 0, 30);
     mesh.finish();
     let differing = one.window_pixels().iter().zip(mesh.window_pixels()).filter(|(a, b)| a != b).count();
     assert!(differing < 8, "{differing} pixels differ");
     let lit = |x: usize, y: usize| {
-        let near = |x: usize, y: usize| one.window_pixels()[y * 400 + x] != [0; 4];
+        let near = |x: usize, y: usize| one.window_pixels()[y * 400 + x] != [0, 0, 0, 255];
         (x - 1..=x + 1).any(|x| (y - 1..=y + 1).any(|y| near(x, y)))
     };
     for [x, y] in [[40, 40], [140, 194], [200, 200], [259, 205], [359, 359]] {
@@ -124,41 +96,10 @@ fn the_curve_passes_its_points_either_way() {
     }
 }
 
-/// Section 5.9, the Bézier surface: heights by rows of v.
-const HEIGHTS: [[f32; 4]; 4] =
-    [[4.0, 2.0, -1.0, 2.0], [1.0, 3.0, 0.0, -1.0], [4.0, 0.0, 3.0, 4.0], [-2.0, -2.0, 0.0, -1.0]];
-
-fn surface() -> Context {
-    let mut c = context(400, 400);
-    let points: Vec<f32> =
-        (0..16).flat_map(|k| [(k % 4) as f32 - 1.5, (k / 4) as f32 - 1.5, HEIGHTS[k / 4][k % 4]]).collect();
-    c.clear_color([0.0, 0.0, 0.0, 1.0]);
-    c.enable(gl::DEPTH_TEST);
-    c.map2(gl::MAP2_VERTEX_3, [0.0, 1.0], [0.0, 1.0], [3, 12], [4, 4], &points);
-    c.enable(gl::MAP2_VERTEX_3);
-    c.enable(gl::AUTO_NORMAL);
-    c.enable(gl::NORMALIZE);
-    c.map_grid2([20, 20], [0.0, 1.0], [0.0, 1.0]);
-    c.enable(gl::LIGHTING);
-    c.enable(gl::LIGHT0);
-    c.light(gl::LIGHT0, gl::AMBIENT, &[0.2, 0.2, 0.2, 1.0]);
-    c.light(gl::LIGHT0, gl::POSITION, &[0.0, 0.0, 2.0, 1.0]);
-    c.material(gl::FRONT, gl::DIFFUSE, &[0.6, 0.6, 0.6, 1.0]);
-    c.material(gl::FRONT, gl::SPECULAR, &[1.0, 1.0, 1.0, 1.0]);
-    c.material(gl::FRONT, gl::SHININESS, &[50.0]);
-    ortho_about(&mut c, [400, 400], 4.0, -4.0, 4.0);
-    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
-    c.push_matrix();
-    c.rotate(85.0, [1.0, 1.0, 1.0]);
-    c.eval_mesh2(gl::FILL, [0, 20], [0, 20]);
-    c.pop_matrix();
-    c.finish();
-    c
-}
-
+/// Section 5.9, the Bézier surface.
 #[test]
 fn the_surface_is_grey_lit_and_where_it_should_be() {
-    let c = surface();
+    let c = drawn([400, 400], programs::surface);
     let pixels = c.window_pixels();
     let background = [0, 0, 0, 255];
     let covered: Vec<usize> = (0..pixels.len()).filter(|k| pixels[*k] != background).collect();
@@ -179,8 +120,8 @@ fn the_surface_is_grey_lit_and_where_it_should_be() {
 
 #[test]
 fn a_mesh_is_the_strips_it_stands_for() {
-    let mesh = surface();
-    let mut strips = surface();
+    let mesh = drawn([400, 400], programs::surface);
+    let mut strips = drawn([400, 400], programs::surface);
     strips.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
     strips.rotate(85.0, [1.0, 1.0, 1.0]);
     for j in 0..20 {
@@ -193,4 +134,22 @@ fn a_mesh_is_the_strips_it_stands_for() {
     }
     strips.finish();
     assert!(mesh.window_pixels() == strips.window_pixels());
+}
+
+/// Section 5.8: squares of equal width on the quadrilateral that faces the eye, and on the other one narrower
+/// and narrower, as perspective has it: evenly spaced they would change every 8.82 pixels.
+#[test]
+fn the_chessboards_change_where_perspective_says() {
+    let c = drawn([400, 400], programs::texture);
+    let pixels = c.window_pixels();
+    assert!(pixels.iter().all(|p| *p == [0, 0, 0, 255] || *p == [255; 4]));
+    let row = &pixels[206 * 400..207 * 400];
+    let changes: Vec<f64> = (1..400).filter(|x| row[*x] != row[x - 1]).map(|x| x as f64).collect();
+    let near: Vec<f64> = (0..9).map(|k| 7.55 + 24.056 * f64::from(k)).collect();
+    let turned = [296.23, 307.94, 318.60, 328.35, 337.30, 345.54, 353.16, 360.22, 366.79];
+    // The outermost squares of a row are black at one end, like the background.
+    let expected: Vec<f64> = near.into_iter().chain(turned).collect();
+    assert!(changes.iter().all(|x| expected.iter().any(|e| (x - e).abs() <= 1.0)), "{changes:?}");
+    assert_eq!(changes.len(), 16);
+    assert_eq!(pixels[105 * 400 + 9], [0, 0, 0, 255], "black in the lower left corner");
 }
