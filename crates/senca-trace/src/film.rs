@@ -127,7 +127,7 @@ pub struct Film {
     settings: FilmSettings,
     /// Per pixel of the area.
     sums: Vec<Exposure>,
-    /// Samples that every pixel has.
+    /// Samples that every pixel has, or passes of adaptive supersampling.
     samples: u32,
 }
 
@@ -152,7 +152,16 @@ impl Exposure {
         self.count += 1;
     }
 
-    /// Mean, colours times alpha. Of adaptive supersampling the sum is the mean already.
+    /// One more pass of adaptive supersampling.
+    fn add_pass(&mut self, pass: &Self) {
+        for (sum, component) in self.sum.iter_mut().zip(pass.sum) {
+            *sum += component;
+        }
+        self.weight += pass.weight;
+        self.count = self.count.saturating_add(pass.count);
+    }
+
+    /// Mean, colours times alpha. Of adaptive supersampling each pass has added one mean, of weight 1.
     fn mean(&self) -> [f32; 4] {
         if self.count == 0 {
             return [0.0; 4];
@@ -214,7 +223,7 @@ impl Film {
         &self.settings
     }
 
-    /// Samples that every pixel has so far; of adaptive supersampling, 1 once it is done.
+    /// Samples that every pixel has so far; of adaptive supersampling, its passes so far.
     #[must_use]
     pub fn samples(&self) -> u32 {
         self.samples
@@ -233,8 +242,8 @@ impl Film {
         self.expose_up_to(u32::MAX, integrator, watch, control)
     }
 
-    /// [`Film::expose`], but to no more than `most` samples of every pixel: for scenes that move between
-    /// samples.
+    /// [`Film::expose`], but to no more than `most` samples of every pixel, or adaptive passes: for scenes
+    /// that move in between.
     ///
     /// # Errors
     /// As [`Film::expose`].
@@ -248,7 +257,7 @@ impl Film {
         let start = Instant::now();
         let exposed = match Places::of(&self.settings.antialiasing) {
             Some(places) => self.expose_in_passes(most, integrator, &places, watch, control),
-            None => self.expose_adaptively(integrator, control),
+            None => self.expose_adaptively(most, integrator, watch, control),
         };
         // After a cancel, too: the passes that were finished are worth keeping.
         if let Some(save) = &mut watch.save {

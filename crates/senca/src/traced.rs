@@ -152,21 +152,20 @@ impl<'s> Shot<'s> {
         Ok(Self { scene, settings, prepared, background, film, recursive, path, fingerprint })
     }
 
-    /// The moments at which the scene is looked at, with the number of samples up to which each holds;
+    /// The moments at which the scene is looked at, with the number of passes up to which each holds;
     /// one without a shutter, or where nothing moves.
     fn moments(&self) -> Vec<(Option<f64>, u32)> {
-        let samples = self.film.antialiasing.samples();
+        let passes = self.film.antialiasing.passes();
         let still = vec![(None, u32::MAX)];
         let Some([open, close]) = self.prepared.camera.shutter else { return still };
-        let adaptive = matches!(self.film.antialiasing, senca_trace::antialias::Antialiasing::Adaptive(_));
-        if adaptive || samples < 2 || self.scene.animations.is_empty() {
+        if passes < 2 || self.scene.animations.is_empty() {
             return still;
         }
         let now = self.settings.moment.as_ref().map_or(0.0, |m| m.seconds);
-        let count = samples.min(MAX_MOMENTS);
+        let count = passes.min(MAX_MOMENTS);
         let moment = |i: u32| {
             let share = (f64::from(i) + 0.5) / f64::from(count);
-            let until = u64::from(samples) * u64::from(i + 1) / u64::from(count);
+            let until = u64::from(passes) * u64::from(i + 1) / u64::from(count);
             (Some(now + open + share * (close - open)), until as u32)
         };
         (0..count).map(moment).collect()

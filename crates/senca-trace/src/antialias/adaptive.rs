@@ -10,6 +10,7 @@
 //! brightness on a display, taken as the square root of light from 0 to 1. A difference equal to the
 //! threshold divides.
 
+use super::MAX_SAMPLES;
 use crate::TraceError;
 
 /// When squares are divided.
@@ -20,6 +21,9 @@ pub struct AdaptiveSettings {
     pub threshold: f32,
     /// How many times a pixel is halved at most, 0 to 8. Default 3: cells of an eighth of a pixel.
     pub max_level: u32,
+    /// How many pictures, each sampled like this, the picture is the mean of, 1 to 2^20. All have their own
+    /// moments, places on lenses and places on lamps; rays go through the same places of pixels. Default 1.
+    pub passes: u32,
 }
 
 /// Deepest level.
@@ -27,7 +31,7 @@ const MAX_LEVEL: u32 = 8;
 
 impl Default for AdaptiveSettings {
     fn default() -> Self {
-        Self { threshold: 0.1, max_level: 3 }
+        Self { threshold: 0.1, max_level: 3, passes: 1 }
     }
 }
 
@@ -40,6 +44,10 @@ impl AdaptiveSettings {
         if self.max_level > MAX_LEVEL {
             let value = self.max_level.into();
             return Err(TraceError::Setting { name: "level", value, expected: "0 to 8" });
+        }
+        if !(1..=MAX_SAMPLES).contains(&self.passes) {
+            let value = self.passes.into();
+            return Err(TraceError::Setting { name: "passes", value, expected: "1 to 1048576" });
         }
         Ok(())
     }
@@ -198,7 +206,7 @@ mod tests {
 
     /// Value and number of samples of a pixel in which `f` says what is seen at (x, y) in [0, 1].
     fn sampled(threshold: f32, max_level: u32, f: impl Fn(f64, f64) -> f32) -> (f32, u32) {
-        let settings = AdaptiveSettings { threshold, max_level };
+        let settings = AdaptiveSettings { threshold, max_level, passes: 1 };
         let mut cache = SquareCache::default();
         cache.begin(settings.cells());
         let mut count = 0;
@@ -229,7 +237,7 @@ mod tests {
     #[test]
     fn samples_taken_many_at_a_time_are_the_same() {
         for (level, slope) in [(0, 0.3), (1, 0.7), (3, 1.1), (4, 0.2)] {
-            let settings = AdaptiveSettings { threshold: 0.05, max_level: level };
+            let settings = AdaptiveSettings { threshold: 0.05, max_level: level, passes: 1 };
             let cells = f64::from(settings.cells());
             let seen = |x: u32, y: u32| {
                 let (x, y) = (f64::from(x) / cells, f64::from(y) / cells);
@@ -279,7 +287,7 @@ mod tests {
     #[test]
     fn nothing_is_remembered_from_one_pixel_to_the_next() {
         let mut cache = SquareCache::default();
-        let settings = AdaptiveSettings { threshold: 0.1, max_level: 0 };
+        let settings = AdaptiveSettings { threshold: 0.1, max_level: 0, passes: 1 };
         for value in [0.25, 0.75] {
             cache.begin(1);
             assert_eq!(pixel(&settings, &mut cache, &mut |_, _| [value; 4]), [value; 4]);

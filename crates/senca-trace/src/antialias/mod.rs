@@ -79,15 +79,25 @@ impl Antialiasing {
         }
     }
 
-    /// Samples of every pixel; those of adaptive supersampling are not known beforehand, and 4 at
-    /// least.
+    /// Samples of every pixel; those of adaptive supersampling are not known beforehand, and 4 a
+    /// pass at least.
     #[must_use]
     pub fn samples(&self) -> u32 {
         match *self {
             Self::None | Self::Jitter { .. } => 1,
             Self::Regular { per_side } => per_side * per_side,
-            Self::Adaptive(_) => 4,
+            Self::Adaptive(settings) => 4 * settings.passes,
             Self::Filtered { samples, .. } => samples,
+        }
+    }
+
+    /// Goes in which the picture can be exposed, each of which makes it better and may show another moment:
+    /// the samples of every pixel, or the passes of adaptive supersampling.
+    #[must_use]
+    pub fn passes(&self) -> u32 {
+        match *self {
+            Self::Adaptive(settings) => settings.passes,
+            _ => self.samples(),
         }
     }
 }
@@ -166,6 +176,7 @@ mod tests {
             Antialiasing::Filtered { samples: 4, filter: PixelFilter::Tent { radius: -1.0 } },
             Antialiasing::Adaptive(AdaptiveSettings { threshold: -0.1, ..AdaptiveSettings::default() }),
             Antialiasing::Adaptive(AdaptiveSettings { max_level: 99, ..AdaptiveSettings::default() }),
+            Antialiasing::Adaptive(AdaptiveSettings { passes: 0, ..AdaptiveSettings::default() }),
         ] {
             assert!(matches!(wrong.check(), Err(TraceError::Setting { .. })), "{wrong:?}");
         }

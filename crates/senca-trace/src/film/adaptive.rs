@@ -1,8 +1,10 @@
 //! Adaptive supersampling of a whole picture.
 
+use std::time::{Duration, Instant};
+
 use senca_math::Control;
 
-use super::{Area, Bench, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, in_tiles};
+use super::{Area, Bench, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, Watch, in_tiles};
 use crate::antialias::{AdaptiveSettings, Antialiasing, SquareCache, adaptive_pixel_so_far, even_pixel};
 use crate::{Pattern, Sampler, TraceError};
 
@@ -19,24 +21,51 @@ const CORNER_SHARE: u32 = 1;
 const INSIDE_SHARE: u32 = 3;
 
 impl Film {
-    /// First the corners of all pixels, (w + 1)(h + 1) rays, then what is needed between them.
+    /// One pass after the other, which the caller may interrupt in between.
     pub(super) fn expose_adaptively<I: Integrator>(
         &mut self,
+        most: u32,
         integrator: &I,
+        watch: &mut Watch<'_>,
         control: &Control<'_>,
     ) -> Result<FilmReport, TraceError> {
         let mut report = FilmReport::default();
         let Antialiasing::Adaptive(settings) = self.settings.antialiasing else { return Ok(report) };
-        if self.samples > 0 {
-            return Ok(report);
+        let (start, mut saved) = (Instant::now(), Instant::now());
+        let (first, wanted) = (self.samples, settings.passes.min(most));
+        let clock = watch.time_limit.map(|limit| (start, limit));
+        while self.samples < wanted {
+            self.pass(integrator, &settings, [first, wanted], clock, control, &mut report)?;
+            if watch.time_limit.is_some_and(|limit| start.elapsed() >= limit) {
+                break;
+            }
+            if let Some(save) = watch.save.as_mut().filter(|_| saved.elapsed() >= Watch::SAVE_EVERY) {
+                save(self);
+                saved = Instant::now();
+            }
         }
-        let to = CORNER_SHARE + INSIDE_SHARE;
-        let progress = Progress { control, from: 0, to, range: 0..CORNER_SHARE, clock: None };
-        let corners = self.corners(integrator, &progress, &mut report)?;
-        let progress = Progress { control, from: 0, to, range: CORNER_SHARE..to, clock: None };
-        self.insides(integrator, &settings, &corners, &progress, &mut report)?;
-        self.samples = 1;
         Ok(report)
+    }
+
+    /// First the corners of all pixels, (w + 1)(h + 1) rays, then what is needed between them.
+    fn pass<I: Integrator>(
+        &mut self,
+        integrator: &I,
+        settings: &AdaptiveSettings,
+        [first, wanted]: [u32; 2],
+        clock: Option<(Instant, Duration)>,
+        control: &Control<'_>,
+        report: &mut FilmReport,
+    ) -> Result<(), TraceError> {
+        let share = |passes: u32| (CORNER_SHARE + INSIDE_SHARE) * passes;
+        let (from, to, now) = (share(first), share(wanted), share(self.samples));
+        let progress = Progress { control, from, to, range: now..now + CORNER_SHARE, clock };
+        let corners = self.corners(integrator, &progress, report)?;
+        let range = now + CORNER_SHARE..share(self.samples + 1);
+        let progress = Progress { control, from, to, range, clock };
+        self.insides(integrator, settings, &corners, &progress, report)?;
+        self.samples += 1;
+        Ok(())
     }
 
     /// Colours at the corners of pixels, row by row.
@@ -75,9 +104,9 @@ impl Film {
     fn place(&self, pixel: [u32; 2], at: [u32; 2], cells: u32) -> SamplePlace {
         let [x, y] = [0, 1].map(|k| f64::from(pixel[k]) + f64::from(at[k]) / f64::from(cells));
         let row = pixel[1].min(self.settings.size[1].saturating_sub(1));
-        // The same place has the same random numbers, whichever pixel asks.
+        // The same place has the same random numbers in a pass, whichever pixel asks.
         let [u, v] = [0, 1].map(|k| pixel[k].wrapping_mul(256) + at[k] * (256 / cells));
-        let mut sampler = Sampler::new(Pattern::Sobol, self.settings.seed, u, v, 0);
+        let mut sampler = Sampler::new(Pattern::Sobol, self.settings.seed, u, v, self.samples);
         sampler.set_dimension(1);
         SamplePlace { x, y, row, sampler }
     }
@@ -134,7 +163,7 @@ impl Film {
         for (tile, (exposures, counts)) in tiles.iter().zip(done) {
             for ((x, y), exposure) in tile.places_in_squares().zip(exposures) {
                 report.samples += u64::from(exposure.count - 4);
-                self.sums[area.index(x, y)] = exposure;
+                self.sums[area.index(x, y)].add_pass(&exposure);
             }
             report.counts += counts;
         }

@@ -7,7 +7,7 @@
 //! | 8 | fingerprint of scene, view and settings, by the caller |
 //! | 8 | fingerprint of the film's settings but for the number of samples |
 //! | 4 x 6 | width and height of the picture; x, y, width, height of the part |
-//! | 4 | samples that every pixel has |
+//! | 4 | samples that every pixel has, or passes |
 //! | 24 per pixel | four sums, the sum of weights, the number of samples |
 //! | 8 | checksum of all before |
 //!
@@ -15,7 +15,7 @@
 
 use super::{Area, Exposure, Film, FilmSettings};
 use crate::TraceError;
-use crate::antialias::Antialiasing;
+use crate::antialias::{AdaptiveSettings, Antialiasing};
 
 const MAGIC: &[u8; 8] = b"SENCAPAR";
 const VERSION: u32 = 1;
@@ -89,6 +89,9 @@ fn checksum(bytes: &[u8]) -> u64 {
 fn settings_fingerprint(settings: &FilmSettings) -> u64 {
     let antialiasing = match settings.antialiasing {
         Antialiasing::Filtered { filter, .. } => Antialiasing::Filtered { samples: 0, filter },
+        Antialiasing::Adaptive(adaptive) => {
+            Antialiasing::Adaptive(AdaptiveSettings { passes: 0, ..adaptive })
+        }
         other => other,
     };
     Fingerprint::of(&FilmSettings { antialiasing, ..*settings })
@@ -121,7 +124,7 @@ impl Film {
     }
 
     /// A film that was saved, to be exposed further by `settings`. These may ask for more samples of a
-    /// filtered picture than before; all else has to be the same.
+    /// filtered picture, or more passes of an adaptive one, than before; all else has to be the same.
     ///
     /// # Errors
     /// [`SavedFilmError`].

@@ -61,12 +61,13 @@ fn settings(antialiasing: Antialiasing) -> FilmSettings {
     FilmSettings { size: [37, 21], area, antialiasing, seed: 1 }
 }
 
-fn all_kinds() -> [Antialiasing; 6] {
+fn all_kinds() -> [Antialiasing; 7] {
     [
         Antialiasing::None,
         Antialiasing::Jitter { amplitude: 0.8 },
         Antialiasing::Regular { per_side: 3 },
         Antialiasing::Adaptive(AdaptiveSettings::default()),
+        Antialiasing::Adaptive(AdaptiveSettings { passes: 3, ..AdaptiveSettings::default() }),
         Antialiasing::Filtered { samples: 8, filter: PixelFilter::Box },
         Antialiasing::Filtered { samples: 8, filter: PixelFilter::Mitchell { radius: 2.0 } },
     ]
@@ -183,6 +184,23 @@ fn more_samples_may_be_asked_of_a_saved_film() {
     let mut film = Film::resume(&few.save(5), 5, &with(8)).expect("reads back");
     film.expose(&Stripes, &mut Watch::default(), &Control::default()).expect("a picture");
     assert_eq!(film, exposed(&with(8)).0);
+}
+
+#[test]
+fn adaptive_passes_are_a_mean_of_other_moments() {
+    let with =
+        |passes| settings(Antialiasing::Adaptive(AdaptiveSettings { passes, ..AdaptiveSettings::default() }));
+    let mut film = Film::new(&with(4)).expect("a film");
+    for (until, light) in [(1, 0.0), (3, 0.5), (9, 1.0)] {
+        let even = Even(light, AtomicU64::new(0));
+        film.expose_up_to(until, &even, &mut Watch::default(), &Control::default()).expect("a pass");
+    }
+    assert_eq!(film.samples(), 4);
+    assert!(film.develop(false).pixels().iter().all(|p| *p == [0.5, 0.5, 0.5, 1.0]));
+    let few = exposed(&with(2)).0;
+    let mut film = Film::resume(&few.save(5), 5, &with(5)).expect("reads back");
+    film.expose(&Stripes, &mut Watch::default(), &Control::default()).expect("a picture");
+    assert_eq!(film, exposed(&with(5)).0);
 }
 
 #[test]

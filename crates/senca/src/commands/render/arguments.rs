@@ -95,7 +95,8 @@ pub(crate) struct DrawingArguments {
     #[arg(long, value_enum, value_name = "RASTER")]
     pub(crate) raster: Option<RasterChoice>,
 
-    /// Samples per pixel against jagged edges [default: the scene's, or 1; of paths, 64]
+    /// Samples per pixel against jagged edges, or passes of --aa adaptive [default: the scene's, or 1; of
+    /// paths, 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     pub(crate) samples: Option<u32>,
 

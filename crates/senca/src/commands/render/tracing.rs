@@ -211,9 +211,6 @@ impl TracingArguments {
         hints: &RenderHints,
     ) -> Result<Tracing, Failure> {
         let antialiasing = self.antialiasing(method, aa, samples, time_limit, hints)?;
-        if self.resume.is_some() && matches!(antialiasing, Antialiasing::Adaptive(_)) {
-            return Err(Failure::usage("adaptive sampling has no passes to resume; take another --aa"));
-        }
         let standard = RecursiveSettings::default();
         let path = PathSettings::default();
         let depth = self.max_depth.or(hints.max_depth);
@@ -267,7 +264,7 @@ impl TracingArguments {
                 one_sample("jitter", samples, Antialiasing::Jitter { amplitude })
             }
             Some(AntialiasingChoice::Super) => regular(hinted),
-            Some(AntialiasingChoice::Adaptive) => self.adaptive(samples),
+            Some(AntialiasingChoice::Adaptive) => Ok(self.adaptive(hinted.or(endless))),
             Some(AntialiasingChoice::Filter) => self.filtered(hinted.or(endless)),
         }
     }
@@ -304,16 +301,13 @@ impl TracingArguments {
         Ok(Antialiasing::Filtered { samples: samples.unwrap_or(FILTER_SAMPLES), filter })
     }
 
-    fn adaptive(&self, samples: Option<u32>) -> Result<Antialiasing, Failure> {
-        if samples.is_some() {
-            let text = "--aa adaptive chooses its samples itself; leave out --samples, or take --aa-level";
-            return Err(Failure::usage(text));
-        }
+    fn adaptive(&self, passes: Option<u32>) -> Antialiasing {
         let standard = AdaptiveSettings::default();
-        Ok(Antialiasing::Adaptive(AdaptiveSettings {
+        Antialiasing::Adaptive(AdaptiveSettings {
             threshold: self.aa_threshold.map_or(standard.threshold, |v| v as f32),
             max_level: self.aa_level.unwrap_or(standard.max_level),
-        }))
+            passes: passes.unwrap_or(standard.passes),
+        })
     }
 }
 
@@ -339,10 +333,7 @@ fn regular(samples: Option<u32>) -> Result<Antialiasing, Failure> {
 
 /// Shadow rays along a side of an area light: about 16 for a pixel, all its samples together.
 fn soft_shadows_for(antialiasing: Antialiasing) -> u32 {
-    match antialiasing {
-        Antialiasing::Adaptive(_) => 4,
-        other => (4.0 / f64::from(other.samples()).sqrt()).ceil().max(1.0) as u32,
-    }
+    (4.0 / f64::from(antialiasing.passes()).sqrt()).ceil().max(1.0) as u32
 }
 
 fn accel_of_hint(hint: AccelerationHint) -> Accel {
@@ -379,7 +370,8 @@ mod tests {
         assert_eq!(of(Some(AntialiasingChoice::Super), Some(9)), Ok(Antialiasing::Regular { per_side: 3 }));
         assert!(of(Some(AntialiasingChoice::Super), Some(8)).is_err());
         assert!(of(Some(AntialiasingChoice::None), Some(4)).is_err());
-        assert!(of(Some(AntialiasingChoice::Adaptive), Some(4)).is_err());
+        let passes = Antialiasing::Adaptive(AdaptiveSettings { passes: 4, ..AdaptiveSettings::default() });
+        assert_eq!(of(Some(AntialiasingChoice::Adaptive), Some(4)), Ok(passes));
     }
 
     #[test]
