@@ -5,8 +5,8 @@ use crate::target::{Clear, Target};
 use crate::texture::{Sampler, Texture};
 use senca_math::glam::Vec4;
 
-/// Largest number of varyings a vertex may carry.
-pub const MAX_VARYINGS: usize = 32;
+/// Largest number of varyings a vertex may carry: two colours, a fog coordinate and eight places in textures.
+pub const MAX_VARYINGS: usize = 40;
 
 /// Fragments handed to a [`FragmentShader`] at once: 2 rows of 8 pixels.
 pub const LANES: usize = 16;

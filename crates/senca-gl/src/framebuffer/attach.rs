@@ -119,7 +119,7 @@ impl TextureImage {
     fn plane(&self) -> Option<Plane> {
         let texture = self.texture.lock();
         let image = texture.image(self.face, self.level)?;
-        if !image.is_present() || self.layer >= image.depth || image.border != 0 {
+        if !image.is_present() || self.layer >= image.depth {
             return None;
         }
         let first = image.index(0, 0, self.layer as usize);

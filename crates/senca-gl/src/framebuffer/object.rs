@@ -78,8 +78,15 @@ impl FramebufferObject {
         for (point, attachment) in self.points().filter(|(_, attachment)| !attachment.is_none()) {
             any = true;
             let Some(plane) = attachment.plane() else { return gl::FRAMEBUFFER_INCOMPLETE_ATTACHMENT };
-            if !point.takes(plane.format.base()) {
-                return gl::FRAMEBUFFER_INCOMPLETE_ATTACHMENT;
+            let base = plane.format.base();
+            if !point.takes(base) {
+                // Luminance, intensity and alpha might be drawn to, but are not.
+                let is_color = matches!(point, Point::Color(_)) && base.is_color();
+                return if is_color {
+                    gl::FRAMEBUFFER_UNSUPPORTED
+                } else {
+                    gl::FRAMEBUFFER_INCOMPLETE_ATTACHMENT
+                };
             }
             if *samples.get_or_insert(plane.samples) != plane.samples {
                 return gl::FRAMEBUFFER_INCOMPLETE_MULTISAMPLE;
@@ -88,7 +95,6 @@ impl FramebufferObject {
         if !any {
             return gl::FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT;
         }
-        // A draw or read buffer without attachment is no fault, as since OpenGL 4.1: programs rely on it.
         gl::FRAMEBUFFER_COMPLETE
     }
 }

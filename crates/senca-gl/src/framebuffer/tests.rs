@@ -309,7 +309,7 @@ fn wrong_commands_on_objects_do_nothing() {
     wrong(&|c| c.bind_framebuffer(gl::TEXTURE_2D, 0), gl::INVALID_ENUM);
     wrong(&|c| c.bind_renderbuffer(gl::RENDERBUFFER, 77), gl::INVALID_OPERATION);
     wrong(&|c| c.renderbuffer_storage(gl::RENDERBUFFER, gl::RGBA8, [1, 1]), gl::INVALID_OPERATION);
-    wrong(&|c| c.renderbuffer_storage(gl::RENDERBUFFER, gl::LUMINANCE8, [1, 1]), gl::INVALID_ENUM);
+    wrong(&|c| c.renderbuffer_storage(gl::RENDERBUFFER, gl::COMPRESSED_RGB, [1, 1]), gl::INVALID_ENUM);
     wrong(&|c| c.renderbuffer_storage(gl::RENDERBUFFER, gl::RGBA8, [-1, 1]), gl::INVALID_VALUE);
     wrong(&|c| c.renderbuffer_storage(gl::RENDERBUFFER, gl::RGBA8, [1, 1 << 20]), gl::INVALID_VALUE);
     wrong(&|c| c.renderbuffer_storage_multisample(gl::RENDERBUFFER, 5, gl::RGBA8, [1, 1]), gl::INVALID_VALUE);
@@ -523,4 +523,35 @@ fn a_texture_is_depth_and_stencil_at_once() {
     c.clear_stencil(7);
     c.clear(gl::DEPTH_BUFFER_BIT | gl::STENCIL_BUFFER_BIT);
     assert_eq!((depths(&mut c, [2, 2]), stencils(&mut c, [2, 2])), (vec![0.5; 4], vec![7; 4]));
+}
+
+#[test]
+fn luminance_is_kept_but_not_drawn_to() {
+    let mut c = context(1, 1);
+    object(&mut c, [1, 1], 0);
+    let buffer = c.gen_renderbuffers(1)[0];
+    c.bind_renderbuffer(gl::RENDERBUFFER, buffer);
+    c.renderbuffer_storage(gl::RENDERBUFFER, gl::LUMINANCE, [1, 1]);
+    c.framebuffer_renderbuffer(gl::FRAMEBUFFER, gl::COLOR_ATTACHMENT0, gl::RENDERBUFFER, buffer);
+    assert_eq!(c.get_error(), gl::NO_ERROR);
+    assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_UNSUPPORTED);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    assert_eq!(c.get_error(), gl::INVALID_FRAMEBUFFER_OPERATION);
+}
+
+#[test]
+fn the_border_of_a_texture_is_drawn_to() {
+    let mut c = context(1, 1);
+    object(&mut c, [1, 1], 0);
+    let texture = c.gen_textures(1)[0];
+    c.bind_texture(gl::TEXTURE_2D, texture);
+    c.tex_image_2d(gl::TEXTURE_2D, 0, gl::RGBA as i32, [4, 4], 1, gl::RGBA, gl::UNSIGNED_BYTE, None);
+    c.framebuffer_texture_2d(gl::FRAMEBUFFER, gl::COLOR_ATTACHMENT0, gl::TEXTURE_2D, texture, 0);
+    c.framebuffer_renderbuffer(gl::FRAMEBUFFER, gl::DEPTH_STENCIL_ATTACHMENT, gl::RENDERBUFFER, 0);
+    assert_eq!(c.check_framebuffer_status(gl::FRAMEBUFFER), gl::FRAMEBUFFER_COMPLETE);
+    c.clear_color([1.0, 0.0, 0.0, 1.0]);
+    c.clear(gl::COLOR_BUFFER_BIT);
+    let mut out = [0; 4 * 4 * 4];
+    c.get_tex_image(gl::TEXTURE_2D, 0, gl::RGBA, gl::UNSIGNED_BYTE, &mut out);
+    assert!(out.chunks_exact(4).all(|texel| texel == [255, 0, 0, 255]), "{out:?}");
 }

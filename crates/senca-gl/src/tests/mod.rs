@@ -227,3 +227,28 @@ fn a_lit_vertex_has_the_colour_of_the_formula() {
 }
 
 mod samples;
+
+#[test]
+fn all_units_with_fog_and_a_second_colour_are_drawn() {
+    let mut c = context(4, 4);
+    c.enable(gl::FOG);
+    c.enable(gl::COLOR_SUM);
+    c.fog(gl::FOG_MODE, &[gl::LINEAR as f32]);
+    c.fog(gl::FOG_START, &[10.0]);
+    c.fog(gl::FOG_END, &[20.0]);
+    for unit in 0..crate::state::TEXTURE_UNITS as crate::Enum {
+        c.active_texture(gl::TEXTURE0 + unit);
+        c.tex_parameter(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, &[f64::from(gl::NEAREST)]);
+        let (texel, format) = ([unit as u8 + 1, 2, 3, 255], gl::RGBA);
+        let name = c.gen_textures(1)[0];
+        c.bind_texture(gl::TEXTURE_2D, name);
+        c.tex_parameter(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, &[f64::from(gl::NEAREST)]);
+        c.tex_image_2d(gl::TEXTURE_2D, 0, format as i32, [1, 1], 0, format, gl::UNSIGNED_BYTE, Some(&texel));
+        c.tex_env(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, &[gl::ADD as f32]);
+        c.enable(gl::TEXTURE_2D);
+    }
+    c.color([10u8, 20, 30]);
+    c.secondary_color([0u8, 0, 100]);
+    triangle(&mut c);
+    assert_eq!(pixel(&mut c, 4, 0, 0), [10 + 36, 20 + 16, 30 + 24 + 100, 255]);
+}

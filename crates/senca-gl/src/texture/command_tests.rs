@@ -90,9 +90,14 @@ fn wrong_images_are_refused() {
     wrong(t, 0, gl::DEPTH_COMPONENT, [2, 2], 0, rgba, byte, gl::INVALID_OPERATION);
     // Fewer bytes than pixels.
     wrong(t, 0, rgba, [16, 16], 0, rgba, byte, gl::INVALID_OPERATION);
-    let cube = gl::TEXTURE_CUBE_MAP_POSITIVE_X;
-    wrong(cube, 0, gl::DEPTH_COMPONENT, [2, 2], 0, gl::DEPTH_COMPONENT, byte, gl::INVALID_OPERATION);
     assert_eq!(level(&mut c, t, 0, gl::TEXTURE_WIDTH), 0);
+    // Depths have no third dimension, but the faces of a cube.
+    let (depth, texels) = (gl::DEPTH_COMPONENT, [0; 8]);
+    c.tex_image_3d(gl::TEXTURE_3D, 0, depth as i32, [2, 2, 2], 0, depth, byte, Some(&texels));
+    assert_eq!(c.get_error(), gl::INVALID_OPERATION);
+    let cube = gl::TEXTURE_CUBE_MAP_POSITIVE_X;
+    c.tex_image_2d(cube, 0, depth as i32, [2, 2], 0, depth, byte, Some(&texels));
+    assert_eq!((c.get_error(), level(&mut c, cube, 0, gl::TEXTURE_WIDTH)), (gl::NO_ERROR, 2));
 }
 
 #[test]

@@ -150,9 +150,10 @@ impl InternalFormat {
         Self::color(*token).map(|format| Self { token: format.base.color_token(), ..format })
     }
 
-    /// Format of a token as renderbuffers take it: colours that can be drawn to, depths and stencil values.
+    /// Format of a token as renderbuffers take it: colours, of which some cannot be drawn to, depths and stencil
+    /// values; nothing compressed.
     pub(crate) fn for_renderbuffer(token: u32) -> Option<Self> {
-        if token <= 4 {
+        if token <= 4 || UNCOMPRESSED.iter().any(|pair| pair.0 == token) {
             return None;
         }
         let stencil = [
@@ -166,7 +167,7 @@ impl InternalFormat {
             let (base, storage) = (BaseFormat::Stencil, StorageKind::Stencil);
             return Some(Self { token, base, storage, is_srgb: false, depth_bits: 0 });
         }
-        Self::for_texture(token).filter(|format| !format.base.is_color() || format.is_color_renderable())
+        Self::for_texture(token)
     }
 
     fn color(token: u32) -> Option<Self> {
@@ -256,11 +257,6 @@ impl InternalFormat {
     /// Whether depths are floating-point numbers by name.
     pub(crate) fn is_float(self) -> bool {
         matches!(self.token, gl::DEPTH_COMPONENT32F | gl::DEPTH32F_STENCIL8)
-    }
-
-    /// Whether it can be the colour of a framebuffer: red, green and blue, with or without alpha.
-    pub(crate) fn is_color_renderable(self) -> bool {
-        matches!(self.base, BaseFormat::Rgb | BaseFormat::Rgba)
     }
 
     /// Bits of a component, as the tokens of `GetTexLevelParameter` and `GetRenderbufferParameter` ask for them

@@ -57,7 +57,8 @@ impl Definition {
         if target == TexTarget::Cube && self.size[0] != self.size[1] {
             return Err(Error::InvalidValue);
         }
-        if format.base().has_depth() && !matches!(target, TexTarget::One | TexTarget::Two) {
+        // Cube maps of depths are OpenGL 3.0's; programs that cast shadows of lamps have them.
+        if format.base().has_depth() && target == TexTarget::Three {
             return Err(Error::InvalidOperation);
         }
         let size = self.size.map(|side| side as u32);
