@@ -34,22 +34,28 @@ fn has_compiler() -> bool {
 
 /// Compiles and runs a program of `tests/c`; what it says is wrong fails the test.
 fn runs(name: &str) {
+    runs_with(&format!("tests/c/{name}.c"), &[]);
+}
+
+/// Compiles and runs a program of this crate with arguments.
+fn runs_with(source: &str, arguments: &[&str]) {
     if !has_compiler() {
         return;
     }
     let library = library();
-    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(source);
+    let name = source.file_stem().unwrap().to_str().unwrap();
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let compiled = Command::new("cc")
         .args(["-Wall", "-Wextra", "-O1", "-o"])
         .arg(&program)
-        .arg(sources.join(format!("{name}.c")))
+        .arg(&source)
         .arg(library.join("libOSMesa.so.8"))
-        .arg("-lpthread")
+        .args(["-lpthread", "-ldl", "-lm"])
         .output()
         .unwrap();
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-    let ran = Command::new(&program).env("LD_LIBRARY_PATH", library).output().unwrap();
+    let ran = Command::new(&program).args(arguments).env("LD_LIBRARY_PATH", library).output().unwrap();
     let said = String::from_utf8_lossy(&ran.stdout) + String::from_utf8_lossy(&ran.stderr);
     assert!(ran.status.success(), "{name}: {}\n{said}", ran.status);
 }
@@ -67,6 +73,12 @@ fn contexts() {
 #[test]
 fn nonsense_does_not_crash() {
     runs("nonsense");
+}
+
+/// The programs whose speed is told; each is drawn twice.
+#[test]
+fn the_measured_pictures_are_drawn() {
+    runs_with("benches/speed.c", &["libOSMesa.so.8", "0", "1"]);
 }
 
 /// No symbol but those of OpenGL and OSMesa is to be seen from outside, and the name is that programs ask for.

@@ -23,6 +23,8 @@ const CHECKED_ELSEWHERE: &[&str] = &[
     "cargo build --release -p senca",
     "cargo run --release -p senca-gl --example ",
     "cc -o picture ",
+    "cc -O2 -o speed crates/senca-osmesa/benches/speed.c ",
+    "./speed ",
     "LD_LIBRARY_PATH=target/release ./picture",
     "cargo install --path crates/senca",
     "cargo doc --workspace --no-deps --open",
