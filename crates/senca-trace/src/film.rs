@@ -87,9 +87,8 @@ impl Area {
     /// Columns and rows of the pixels of a tile, so that those that follow each other are near each other
     /// both ways: square by square (Morton 1966).
     fn places_in_squares(self) -> impl Iterator<Item = (u32, u32)> {
-        let side = self.width.max(self.height).next_power_of_two();
+        let places = IN_SQUARES.iter().map(|&[x, y]| (u32::from(x), u32::from(y)));
         let inside = move |&(x, y): &(u32, u32)| x < self.width && y < self.height;
-        let places = (0..side * side).map(|i| (every_second_bit(i), every_second_bit(i >> 1)));
         places.filter(inside).map(move |(x, y)| (self.x + x, self.y + y))
     }
 
@@ -99,8 +98,21 @@ impl Area {
     }
 }
 
+/// Columns and rows of a tile's pixels, square by square.
+const IN_SQUARES: [[u8; 2]; (TILE * TILE) as usize] = {
+    let mut places = [[0; 2]; (TILE * TILE) as usize];
+    let mut i = 0;
+    while i < TILE * TILE {
+        places[i as usize] = [every_second_bit(i) as u8, every_second_bit(i >> 1) as u8];
+        i += 1;
+    }
+    places
+};
+
+const _: () = assert!(TILE.is_power_of_two() && TILE <= 256);
+
 /// The number that bits 0, 2, 4, ... make.
-fn every_second_bit(i: u32) -> u32 {
+const fn every_second_bit(i: u32) -> u32 {
     let i = i & 0x5555_5555;
     let i = (i | (i >> 1)) & 0x3333_3333;
     let i = (i | (i >> 2)) & 0x0f0f_0f0f;
@@ -125,21 +137,26 @@ pub struct FilmSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     settings: FilmSettings,
-    /// Per pixel of the area.
-    sums: Vec<Exposure>,
+    /// Sum of colours times alpha, and of alpha, per pixel of the area.
+    sums: Vec<[f32; 4]>,
+    /// Weight and number of the samples of each pixel. Empty where all pixels have the same, of weight 1.
+    tallies: Vec<Tally>,
     /// Samples that every pixel has, or passes of adaptive supersampling.
     samples: u32,
+}
+
+/// Sum of weights, and number of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Tally {
+    weight: f32,
+    count: u32,
 }
 
 /// What a pixel has gathered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Exposure {
-    /// Sum of colours times alpha, and of alpha.
     sum: [f32; 4],
-    /// Sum of weights.
-    weight: f32,
-    /// Number of samples.
-    count: u32,
+    tally: Tally,
 }
 
 impl Exposure {
@@ -148,27 +165,23 @@ impl Exposure {
         for (sum, component) in self.sum.iter_mut().zip(color) {
             *sum += weight * component;
         }
-        self.weight += weight;
-        self.count += 1;
+        self.tally.weight += weight;
+        self.tally.count += 1;
     }
+}
 
-    /// One more pass of adaptive supersampling.
-    fn add_pass(&mut self, pass: &Self) {
-        for (sum, component) in self.sum.iter_mut().zip(pass.sum) {
-            *sum += component;
-        }
+impl Tally {
+    /// One more pass of adaptive supersampling, which has added one mean of weight 1.
+    fn add_pass(&mut self, pass: Self) {
         self.weight += pass.weight;
         self.count = self.count.saturating_add(pass.count);
     }
 
-    /// Mean, colours times alpha. Of adaptive supersampling each pass has added one mean, of weight 1.
-    fn mean(&self) -> [f32; 4] {
-        if self.count == 0 {
-            return [0.0; 4];
-        }
+    /// What sums are divided by; `None` without samples.
+    fn divisor(self) -> Option<f32> {
         // With a filter that is negative in places, few samples may cancel.
         let weight = if self.weight.abs() < 0.25 { self.count as f32 } else { self.weight };
-        self.sum.map(|v| v / weight)
+        (self.count > 0).then_some(weight)
     }
 }
 
@@ -213,8 +226,20 @@ impl Film {
     /// [`TraceError::Setting`] when the way of sampling is out of its range.
     pub fn new(settings: &FilmSettings) -> Result<Self, TraceError> {
         settings.antialiasing.check()?;
-        let sums = vec![Exposure::default(); settings.area.pixels()];
-        Ok(Self { settings: *settings, sums, samples: 0 })
+        let pixels = settings.area.pixels();
+        let is_uneven =
+            matches!(settings.antialiasing, Antialiasing::Adaptive(_) | Antialiasing::Filtered { .. });
+        let tallies = vec![Tally::default(); if is_uneven { pixels } else { 0 }];
+        // Written and not only reserved: the system hands the pages over now, and not to threads that trace.
+        let mut sums = Vec::with_capacity(pixels);
+        sums.resize_with(pixels, || [0.0; 4]);
+        Ok(Self { settings: *settings, sums, tallies, samples: 0 })
+    }
+
+    /// Weight and number of the samples of a pixel.
+    fn tally(&self, pixel: usize) -> Tally {
+        let same = Tally { weight: self.samples as f32, count: self.samples };
+        self.tallies.get(pixel).copied().unwrap_or(same)
     }
 
     /// What it is made for.
@@ -264,7 +289,10 @@ impl Film {
             save(self);
         }
         let mut report = exposed?;
-        let taken: u64 = self.sums.iter().map(|e| u64::from(e.count)).sum();
+        let taken = match self.tallies.as_slice() {
+            [] => u64::from(self.samples) * self.sums.len() as u64,
+            tallies => tallies.iter().map(|tally| u64::from(tally.count)).sum(),
+        };
         let pixels = self.sums.len().max(1) as u64;
         report.samples_per_pixel = ((taken + pixels / 2) / pixels) as u32;
         report.seconds = start.elapsed().as_secs_f64();
@@ -311,15 +339,13 @@ impl Film {
         progress: &Progress<'_>,
         report: &mut FilmReport,
     ) -> Result<(), TraceError> {
-        let area = self.settings.area;
-        let seed = self.settings.seed;
-        let sums = &self.sums;
-        let tile_of = |Bench { work, batch, .. }: &mut Bench<I>, tile: &Area| {
+        let (area, seed) = (self.settings.area, self.settings.seed);
+        let before = (self.samples > 0).then(|| (self.sums.clone(), self.tallies.clone()));
+        let same = self.tally(usize::MAX);
+        let work_on = |bench: &mut Bench<I>, (tile, mut part): (Area, TilePart<'_>)| {
+            let Bench { work, batch, exposures, .. } = bench;
             let before = I::counts(work);
-            let mut exposures = Vec::with_capacity(tile.pixels());
-            for y in tile.y..tile.y + tile.height {
-                exposures.extend_from_slice(&sums[area.index(tile.x, y)..][..tile.width as usize]);
-            }
+            part.load(same, exposures);
             batch.clear();
             for (x, y) in tile.places_in_squares() {
                 let pixel = tile.index(x, y);
@@ -334,20 +360,22 @@ impl Film {
                     };
                     batch.push(place, pixel, weight);
                     if batch.is_full() {
-                        batch.develop(integrator, work, progress.control, &mut exposures)?;
+                        batch.develop(integrator, work, progress.control, exposures)?;
                     }
                 }
             }
-            batch.develop(integrator, work, progress.control, &mut exposures)?;
-            Some((exposures, I::counts(work).since(&before)))
+            batch.develop(integrator, work, progress.control, exposures)?;
+            part.store(exposures);
+            Some(I::counts(work).since(&before))
         };
         let tiles = area.tiles();
-        let done = in_tiles::<I, _>(&tiles, progress, tile_of)?;
-        for (tile, (exposures, counts)) in tiles.iter().zip(done) {
-            let width = tile.width as usize;
-            for (y, row) in (tile.y..).zip(exposures.chunks(width)) {
-                self.sums[area.index(tile.x, y)..][..width].copy_from_slice(row);
-            }
+        let parts = tile_parts(&area, tiles.len(), &mut self.sums, &mut self.tallies);
+        let tiles: Vec<_> = tiles.into_iter().zip(parts).collect();
+        let done = in_tiles::<I, _, _>(tiles, progress, work_on);
+        if done.is_err() {
+            self.undo(before);
+        }
+        for counts in done? {
             report.counts += counts;
         }
         report.samples += u64::from(range.end - range.start) * area.pixels() as u64;
@@ -355,28 +383,48 @@ impl Film {
         Ok(())
     }
 
+    /// Forgets a pass of which some tiles were finished; without a film `before` it was the first.
+    fn undo(&mut self, before: Option<(Vec<[f32; 4]>, Vec<Tally>)>) {
+        if let Some(before) = before {
+            (self.sums, self.tallies) = before;
+        } else {
+            self.sums.fill([0.0; 4]);
+            self.tallies.fill(Tally::default());
+        }
+    }
+
     /// The picture so far, of the size of the film's area. With `transparent`, colours are divided by
     /// alpha where something shows through, as [`Image`] wants them.
     #[must_use]
     pub fn develop(&self, transparent: bool) -> Image {
+        self.clone().into_image(transparent)
+    }
+
+    /// [`Film::develop`] for a film that is needed no more, which becomes the picture.
+    #[must_use]
+    pub fn into_image(self, transparent: bool) -> Image {
+        let same = self.tally(usize::MAX).divisor();
         let Area { width, height, .. } = self.settings.area;
-        let mut image = Image::new(width, height, [0.0; 4]);
-        for (pixel, exposure) in image.pixels_mut().iter_mut().zip(&self.sums) {
-            let [r, g, b, a] = exposure.mean();
+        let mut pixels = self.sums;
+        for (number, pixel) in pixels.iter_mut().enumerate() {
+            let divisor = self.tallies.get(number).map_or(same, |tally| tally.divisor());
+            let [r, g, b, a] = divisor.map_or([0.0; 4], |divisor| pixel.map(|v| v / divisor));
             let divides = transparent && a > 0.0 && a < 1.0;
             *pixel = if divides { [r / a, g / a, b / a, a] } else { [r, g, b, a] };
         }
-        image
+        // A film has as many sums as its area has pixels.
+        Image::from_pixels(width, height, pixels).unwrap_or_else(|| Image::new(0, 0, [0.0; 4]))
     }
 
     /// How many samples each pixel has, as a picture: black for none, white for `most`.
     #[must_use]
     pub fn samples_map(&self) -> Image {
         let Area { width, height, .. } = self.settings.area;
-        let most = self.sums.iter().map(|e| e.count).max().unwrap_or(0).max(1) as f32;
+        let count = |pixel: usize| self.tally(pixel).count;
+        let most = (0..self.sums.len()).map(count).max().unwrap_or(0).max(1) as f32;
         let mut image = Image::new(width, height, [0.0; 4]);
-        for (pixel, exposure) in image.pixels_mut().iter_mut().zip(&self.sums) {
-            let share = exposure.count as f32 / most;
+        for (number, pixel) in image.pixels_mut().iter_mut().enumerate() {
+            let share = count(number) as f32 / most;
             *pixel = [share, share, share, 1.0];
         }
         image
@@ -387,14 +435,69 @@ impl Film {
 struct Bench<I: Integrator> {
     work: I::Work,
     batch: Batch,
+    /// Of the tile's pixels.
+    exposures: Vec<Exposure>,
     /// Of adaptive supersampling.
     caches: Vec<SquareCache>,
 }
 
 impl<I: Integrator> Default for Bench<I> {
     fn default() -> Self {
-        Self { work: I::Work::default(), batch: Batch::default(), caches: Vec::new() }
+        Self { work: I::Work::default(), batch: Batch::default(), exposures: Vec::new(), caches: Vec::new() }
     }
+}
+
+/// The part of a film that is a tile, row by row.
+#[derive(Default)]
+struct TilePart<'a> {
+    sums: Vec<&'a mut [[f32; 4]]>,
+    /// None where all pixels of the film have the same.
+    tallies: Vec<&'a mut [Tally]>,
+}
+
+impl TilePart<'_> {
+    /// What the pixels have, `same` being the tally of all without their own.
+    fn load(&self, same: Tally, exposures: &mut Vec<Exposure>) {
+        exposures.clear();
+        exposures.extend(self.sums.iter().flat_map(|row| &**row).map(|&sum| Exposure { sum, tally: same }));
+        for (exposure, tally) in exposures.iter_mut().zip(self.tallies.iter().flat_map(|row| &**row)) {
+            exposure.tally = *tally;
+        }
+    }
+
+    fn store(&mut self, exposures: &[Exposure]) {
+        for (sum, exposure) in self.sums.iter_mut().flat_map(|row| &mut **row).zip(exposures) {
+            *sum = exposure.sum;
+        }
+        for (tally, exposure) in self.tallies.iter_mut().flat_map(|row| &mut **row).zip(exposures) {
+            *tally = exposure.tally;
+        }
+    }
+}
+
+/// The parts of a film of `area` for each of its tiles.
+fn tile_parts<'a>(
+    area: &Area,
+    tiles: usize,
+    sums: &'a mut [[f32; 4]],
+    tallies: &'a mut [Tally],
+) -> Vec<TilePart<'a>> {
+    let mut parts: Vec<TilePart<'a>> = Vec::new();
+    parts.resize_with(tiles, TilePart::default);
+    let width = area.width.max(1) as usize;
+    let columns = width.div_ceil(TILE as usize);
+    let tile = |row: usize, column: usize| row / TILE as usize * columns + column;
+    for (y, row) in sums.chunks_mut(width).enumerate() {
+        for (column, part) in row.chunks_mut(TILE as usize).enumerate() {
+            parts[tile(y, column)].sums.push(part);
+        }
+    }
+    for (y, row) in tallies.chunks_mut(width).enumerate() {
+        for (column, part) in row.chunks_mut(TILE as usize).enumerate() {
+            parts[tile(y, column)].tallies.push(part);
+        }
+    }
+    parts
 }
 
 /// Samples that are taken together.
@@ -475,16 +578,17 @@ impl Progress<'_> {
 }
 
 /// Runs `work` for every tile on all threads; results are in the order of tiles.
-fn in_tiles<I: Integrator, T: Send>(
-    tiles: &[Area],
+fn in_tiles<I: Integrator, D: Send, T: Send>(
+    tiles: Vec<D>,
     progress: &Progress<'_>,
-    work: impl Fn(&mut Bench<I>, &Area) -> Option<T> + Sync,
+    work: impl Fn(&mut Bench<I>, D) -> Option<T> + Sync,
 ) -> Result<Vec<T>, TraceError> {
+    let count = tiles.len();
     // Benches are big: what allocates one for each tile waits for fresh memory more than it traces.
-    let benches: Mutex<Vec<Bench<I>>> = Mutex::default();
+    let benches: Mutex<Vec<Box<Bench<I>>>> = Mutex::default();
     let done = Mutex::new(0usize);
     let results: Option<Vec<T>> = tiles
-        .par_iter()
+        .into_par_iter()
         .with_max_len(1)
         .map(|tile| {
             let free = locked(&benches).pop();
@@ -493,7 +597,7 @@ fn in_tiles<I: Integrator, T: Send>(
             locked(&benches).push(bench);
             let mut done = locked(&done);
             *done += 1;
-            progress.report(*done as f32 / tiles.len() as f32);
+            progress.report(*done as f32 / count as f32);
             Some(result)
         })
         .collect();

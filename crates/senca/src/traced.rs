@@ -76,10 +76,12 @@ pub fn trace_with(
     };
     let mut report = Report { prepare_seconds: start.elapsed().as_secs_f64(), ..Report::default() };
     let exposed = on_threads(settings.drawing.threads, || expose(&shot, &mut film, control, job, start));
-    report.tracing = Some(exposed??);
+    let (exposed, preparing) = exposed??;
+    report.tracing = Some(exposed);
+    report.prepare_seconds += preparing.as_secs_f64();
     Ok(TracedPicture {
-        image: film.develop(shot.background == Background::None),
         samples_map: job.samples_map.then(|| film.samples_map()),
+        image: film.into_image(shot.background == Background::None),
         report,
     })
 }
@@ -179,15 +181,15 @@ impl<'s> Shot<'s> {
     }
 }
 
-/// Exposes the film moment by moment.
+/// Exposes the film moment by moment. Tells, too, how long it took to make the world that rays meet.
 fn expose(
     shot: &Shot<'_>,
     film: &mut Film,
     control: &Control<'_>,
     job: &mut TraceJob<'_>,
     start: Instant,
-) -> Result<FilmReport, Error> {
-    let mut report = FilmReport::default();
+) -> Result<(FilmReport, Duration), Error> {
+    let (mut report, mut preparing) = (FilmReport::default(), Duration::ZERO);
     let moments = shot.moments();
     let count = moments.len();
     let limit = shot.settings.tracing.time_limit;
@@ -201,7 +203,7 @@ fn expose(
         let control = Control { progress: Some(&share), cancel: control.cancel };
         let left = limit.map(|limit| limit.saturating_sub(start.elapsed()));
         let go = Go { shot, prepared, until, left, control };
-        let one = go.expose(film, job)?;
+        let one = go.expose(film, job, &mut preparing)?;
         report = FilmReport {
             counts: sum(report.counts, one.counts),
             samples: report.samples + one.samples,
@@ -212,7 +214,7 @@ fn expose(
             break;
         }
     }
-    Ok(report)
+    Ok((report, preparing))
 }
 
 fn sum(mut a: TraceCounts, b: TraceCounts) -> TraceCounts {
@@ -230,7 +232,13 @@ struct Go<'a> {
 }
 
 impl Go<'_> {
-    fn expose(&self, film: &mut Film, job: &mut TraceJob<'_>) -> Result<FilmReport, Error> {
+    fn expose(
+        &self,
+        film: &mut Film,
+        job: &mut TraceJob<'_>,
+        preparing: &mut Duration,
+    ) -> Result<FilmReport, Error> {
+        let start = Instant::now();
         let (shot, prepared) = (self.shot, self.prepared);
         let settings = shot.settings;
         let world = World::with_settings(&prepared.scene, &settings.tracing.world)?;
@@ -242,9 +250,11 @@ impl Go<'_> {
         Ok(if settings.method == Method::Path {
             let tracer =
                 PathTracer::new(&world, view, size, shot.background, &shot.path).with_lens(view, lens);
+            *preparing += start.elapsed();
             film.expose_up_to(self.until, &tracer, &mut watch, &self.control)?
         } else {
             let tracer = Tracer::new(&world, view, size, shot.background, &shot.recursive).with_lens(lens);
+            *preparing += start.elapsed();
             film.expose_up_to(self.until, &tracer, &mut watch, &self.control)?
         })
     }

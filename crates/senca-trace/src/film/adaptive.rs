@@ -4,7 +4,9 @@ use std::time::{Duration, Instant};
 
 use senca_math::Control;
 
-use super::{Area, Bench, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, Watch, in_tiles};
+use super::{
+    Area, Bench, Exposure, Film, FilmReport, Integrator, Progress, SamplePlace, Tally, Watch, in_tiles,
+};
 use crate::antialias::{AdaptiveSettings, Antialiasing, SquareCache, adaptive_pixel_so_far, even_pixel};
 use crate::{Pattern, Sampler, TraceError};
 
@@ -13,6 +15,9 @@ const CACHED: u32 = 1 << 17;
 
 /// The corners of a pixel, from its place.
 const CORNERS: [[u32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+/// Of a pixel that has the four corners; its sum is the mean already.
+const CORNERS_ONLY: Tally = Tally { weight: 1.0, count: 4 };
 
 /// Share of the progress that the corners of pixels are.
 const CORNER_SHARE: u32 = 1;
@@ -78,7 +83,7 @@ impl Film {
         let area = self.settings.area;
         let grid = Area { width: area.width + 1, height: area.height + 1, ..area };
         let tiles = grid.tiles();
-        let done = in_tiles::<I, _>(&tiles, progress, |Bench { work, .. }, tile| {
+        let done = in_tiles::<I, _, _>(tiles.clone(), progress, |Bench { work, .. }, tile| {
             let before = I::counts(work);
             if progress.control.is_cancelled() {
                 return None;
@@ -124,7 +129,7 @@ impl Film {
         let grid = Area { width: area.width + 1, height: area.height + 1, ..area };
         let cells = settings.cells();
         let tiles = area.tiles();
-        let done = in_tiles::<I, _>(&tiles, progress, |Bench { work, caches, .. }, tile| {
+        let done = in_tiles::<I, _, _>(tiles.clone(), progress, |Bench { work, caches, .. }, tile| {
             let before = I::counts(work);
             if progress.control.is_cancelled() {
                 return None;
@@ -138,7 +143,7 @@ impl Film {
                 if found.is_none() {
                     uneven.push((number, [x, y]));
                 }
-                exposures.push(Exposure { sum: found.unwrap_or_default(), weight: 1.0, count: 4 });
+                exposures.push(Exposure { sum: found.unwrap_or_default(), tally: CORNERS_ONLY });
             }
             for uneven in uneven.chunks((CACHED / (cells + 1).pow(2)).max(1) as usize) {
                 let pixels: Vec<[u32; 2]> = uneven.iter().map(|(_, pixel)| *pixel).collect();
@@ -162,8 +167,12 @@ impl Film {
         })?;
         for (tile, (exposures, counts)) in tiles.iter().zip(done) {
             for ((x, y), exposure) in tile.places_in_squares().zip(exposures) {
-                report.samples += u64::from(exposure.count - 4);
-                self.sums[area.index(x, y)].add_pass(&exposure);
+                report.samples += u64::from(exposure.tally.count - 4);
+                let pixel = area.index(x, y);
+                for (sum, component) in self.sums[pixel].iter_mut().zip(exposure.sum) {
+                    *sum += component;
+                }
+                self.tallies[pixel].add_pass(exposure.tally);
             }
             report.counts += counts;
         }
@@ -179,7 +188,7 @@ impl Film {
         caches: &mut [SquareCache],
         mut take: impl FnMut(&[SamplePlace], &mut Vec<[f32; 4]>) -> Option<()>,
     ) -> Option<Vec<Exposure>> {
-        let mut exposures = vec![Exposure { count: 4, ..Exposure::default() }; pixels.len()];
+        let mut exposures = vec![Exposure { tally: CORNERS_ONLY, ..Exposure::default() }; pixels.len()];
         let mut open: Vec<usize> = (0..pixels.len()).collect();
         let (mut wanted, mut owners) = (Vec::new(), Vec::new());
         let (mut places, mut colors) = (Vec::new(), Vec::new());
@@ -190,8 +199,7 @@ impl Film {
                     places.push(self.place(pixels[number], at, settings.cells()));
                     owners.push((number, at));
                 }
-                let exposure = &mut exposures[number];
-                (exposure.sum, exposure.weight) = (found.unwrap_or_default(), 1.0);
+                exposures[number].sum = found.unwrap_or_default();
                 found.is_none()
             });
             if open.is_empty() {
@@ -201,7 +209,7 @@ impl Film {
             take(&places, &mut colors)?;
             for ((number, [x, y]), &color) in owners.drain(..).zip(&colors) {
                 caches[number].set(x, y, color);
-                exposures[number].count += 1;
+                exposures[number].tally.count += 1;
             }
             places.clear();
         }

@@ -13,7 +13,7 @@
 //!
 //! Numbers are little-endian.
 
-use super::{Area, Exposure, Film, FilmSettings};
+use super::{Area, Exposure, Film, FilmSettings, Tally};
 use crate::TraceError;
 use crate::antialias::{AdaptiveSettings, Antialiasing};
 
@@ -111,12 +111,13 @@ impl Film {
         for number in [self.settings.size[0], self.settings.size[1], x, y, width, height, self.samples] {
             bytes.extend_from_slice(&number.to_le_bytes());
         }
-        for exposure in &self.sums {
-            for value in exposure.sum {
+        for (pixel, sum) in self.sums.iter().enumerate() {
+            for value in sum {
                 bytes.extend_from_slice(&value.to_le_bytes());
             }
-            bytes.extend_from_slice(&exposure.weight.to_le_bytes());
-            bytes.extend_from_slice(&exposure.count.to_le_bytes());
+            let tally = self.tally(pixel);
+            bytes.extend_from_slice(&tally.weight.to_le_bytes());
+            bytes.extend_from_slice(&tally.count.to_le_bytes());
         }
         let sum = checksum(&bytes);
         bytes.extend_from_slice(&sum.to_le_bytes());
@@ -160,8 +161,12 @@ impl Film {
             return Err(SavedFilmError::Mismatch(text.into()));
         }
         film.samples = reader.u32()?;
-        for exposure in &mut film.sums {
-            *exposure = reader.exposure()?;
+        for pixel in 0..film.sums.len() {
+            let exposure = reader.exposure()?;
+            film.sums[pixel] = exposure.sum;
+            if let Some(tally) = film.tallies.get_mut(pixel) {
+                *tally = exposure.tally;
+            }
         }
         Ok(film)
     }
@@ -207,6 +212,6 @@ impl Reader<'_> {
 
     fn exposure(&mut self) -> Result<Exposure, SavedFilmError> {
         let sum = [self.f32()?, self.f32()?, self.f32()?, self.f32()?];
-        Ok(Exposure { sum, weight: self.f32()?, count: self.u32()? })
+        Ok(Exposure { sum, tally: Tally { weight: self.f32()?, count: self.u32()? } })
     }
 }

@@ -272,3 +272,39 @@ fn the_film_is_handed_over_for_saving() {
     film.expose(&Stripes, &mut watch, &Control::default()).expect("a picture");
     assert_eq!(saved.last(), Some(&4));
 }
+
+/// Asks to stop at its first sample of the second pass.
+struct Stopping<'a>(&'a AtomicBool);
+
+impl Integrator for Stopping<'_> {
+    type Work = u64;
+
+    fn sample(&self, place: &SamplePlace, work: &mut u64) -> [f32; 4] {
+        let stops = place.x > 36.0 && place.y > 20.0 && place.x % 1.0 > 0.5;
+        self.0.fetch_or(stops, Ordering::Relaxed);
+        Stripes.sample(place, work)
+    }
+
+    fn counts(work: &u64) -> TraceCounts {
+        Stripes::counts(work)
+    }
+}
+
+#[test]
+fn a_pass_that_was_stopped_leaves_no_trace() {
+    let cancel = AtomicBool::new(false);
+    let control = Control { progress: None, cancel: Some(&cancel) };
+    let area = Area { x: 0, y: 0, width: 67, height: 41 };
+    let settings = FilmSettings { size: [67, 41], area, ..settings(Antialiasing::Regular { per_side: 2 }) };
+    let mut film = Film::new(&settings).expect("a film");
+    let mut watch = Watch { time_limit: Some(Duration::from_secs(999)), save: None };
+    let stopped = film.expose(&Stopping(&cancel), &mut watch, &control);
+    assert_eq!((stopped, film.samples()), (Err(TraceError::Cancelled), 1));
+    let mut first = Film::new(&settings).expect("a film");
+    let mut watch = Watch { time_limit: Some(Duration::ZERO), save: None };
+    first.expose(&Stripes, &mut watch, &Control::default()).expect("a pass");
+    assert_eq!(film, first);
+    first.expose(&Stripes, &mut Watch::default(), &Control::default()).expect("the others");
+    film.expose(&Stripes, &mut Watch::default(), &Control::default()).expect("the others");
+    assert_eq!(film, first);
+}
