@@ -2,7 +2,7 @@
 //!
 //! This crate is the front door: it names the rooms of the house and joins them. The rooms are
 //! crates of their own, reachable as modules here: [`math`], [`scene`], [`io`], [`shading`],
-//! [`raster`], [`pipeline`], [`mod@trace`] and [`radiosity`].
+//! [`raster`], [`pipeline`], [`mod@trace`], [`radiosity`] and [`classic`].
 //!
 //! [`render`] draws a scene in one call; [`io::load`] reads one from a file of any format:
 //!
@@ -43,6 +43,7 @@ pub use traced::{
     CameraOptics, ExplainedPixel, SavePartial, TraceJob, TracedPicture, explain_pixel, trace_with,
 };
 
+pub use senca_classic as classic;
 pub use senca_io as io;
 pub use senca_math as math;
 pub use senca_math::Image;

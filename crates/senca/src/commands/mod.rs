@@ -2,6 +2,7 @@
 
 mod bake;
 mod bench;
+mod classic;
 mod compare;
 mod convert;
 mod form_factor;
@@ -40,6 +41,8 @@ enum Command {
     Lux(Box<lux::Arguments>),
     /// Compares the methods for form factors on a known pair, or on a scene's patches
     FormFactor(form_factor::Arguments),
+    /// Runs the programs of the books
+    Classic(Box<classic::Arguments>),
     /// Measures this program on data it makes itself
     Bench(bench::Arguments),
 }
@@ -55,6 +58,7 @@ pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
         Command::Bake(arguments) => bake::run(&arguments),
         Command::Lux(arguments) => lux::run(&arguments),
         Command::FormFactor(arguments) => form_factor::run(&arguments),
+        Command::Classic(arguments) => classic::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     }
 }
