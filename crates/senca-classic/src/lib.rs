@@ -4,3 +4,5 @@
 //! numbers the text prints as tests, and the fast rooms are tested against some of them.
 //!
 //! Everything here is display-referred, as it was then: a colour is what the screen shows.
+
+pub mod game;
