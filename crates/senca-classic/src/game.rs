@@ -1,17 +1,30 @@
 //! The game library of 1995 and a street to fly through with it.
 
 mod angle;
+mod borders;
 mod clip;
+mod color_map;
+mod fill;
 mod fixed;
+mod line;
 mod matrix;
 mod project;
 mod rotate;
+mod texture;
 mod volume;
 
 pub use angle::{Angle, Angles, PARTS_PER_RADIAN, Tables};
+pub use borders::{BORDER_BITS, Borders, Span};
 pub use clip::{Bounds, ClippedLine, Search, clip_line, clip_line_to_screen, clip_polygon};
+pub use color_map::{ColorMap, LARGEST_SIDE};
+pub use fill::{SpanFill, fill_flat, fill_shaded};
 pub use fixed::{Fixed, FixedFormat, ROTATION_BITS, positional_value};
+pub use line::{Bresenham, draw_line, draw_line_by_address, pixels_by_columns, pixels_by_longer_range};
 pub use matrix::Matrix;
 pub use project::{DepthKept, FARTHEST_PIXEL, Lens, Projection, view_angle};
 pub use rotate::{Coefficient, Number, Rotation, SinCos, rotate_in_plane, scale, translate};
+pub use texture::{
+    CORNER_BITS, Mapping, TEXEL_BITS, Texture, TextureArithmetic, TextureMapping, TexturePlane,
+    TexturedPolygon, fill_textured, for_each_textured_pixel,
+};
 pub use volume::{VolumeTest, test_volume};

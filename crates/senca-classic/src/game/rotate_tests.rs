@@ -123,9 +123,9 @@ fn multiplications_are_12_or_9_and_16() {
     let count = Cell::new(0);
     let number = Counted(&count);
     let sin_cos = SinCos { heading: [number; 2], pitch: [number; 2], roll: [number; 2] };
-    sin_cos.rotate_by_planes([number; 3]);
+    let _ = sin_cos.rotate_by_planes([number; 3]);
     assert_eq!(count.replace(0), 12);
-    sin_cos.coefficients();
+    let _ = sin_cos.coefficients();
     assert_eq!(count.replace(0), 16);
     assert_eq!([12 * 100, 9 * 100 + 16], [1200, 916]);
 }
