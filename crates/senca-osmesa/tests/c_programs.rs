@@ -75,6 +75,11 @@ fn nonsense_does_not_crash() {
     runs("nonsense");
 }
 
+#[test]
+fn nothing_is_touched_beyond_what_is_given() {
+    runs("sizes");
+}
+
 /// The programs whose speed is told; each is drawn twice.
 #[test]
 fn the_measured_pictures_are_drawn() {
