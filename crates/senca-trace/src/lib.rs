@@ -24,8 +24,14 @@ mod world;
 pub use accel::{Accel, AccelSettings};
 pub use counters::{Counters, RayCounts, TraceCounts};
 pub use error::TraceError;
-pub use film::{Area, Film, FilmReport, FilmSettings, Fingerprint, Integrator, SamplePlace, SavedFilmError, Watch};
-pub use intersect::{Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, FlatTriangle, Form, Frustum, Implicit, Intersect, Operation, PatchSurface, PlaneSurface, Polygon, Prism, Revolution, RootMethod, Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of};
+pub use film::{
+    Area, Film, FilmReport, FilmSettings, Fingerprint, Integrator, SamplePlace, SavedFilmError, Watch,
+};
+pub use intersect::{
+    Crossing, Crossings, CsgBody, CsgBuilder, CsgError, Cuboid, Disc, Ellipsoid, Elsewhere, FlatTriangle,
+    Form, Frustum, Implicit, Intersect, Operation, PatchSurface, PlaneSurface, Polygon, Prism, Revolution,
+    RootMethod, Sphere, SurfacePoint, Torus, Triangle, ray_triangle, surface_of,
+};
 pub use material::{MaterialPoint, MaterialTable, ReflectionPoint};
 pub use path::PathSettings;
 pub use primary::PrimaryRays;
