@@ -30,6 +30,7 @@ mod block;
 mod border;
 mod cells;
 mod divide;
+mod grazing;
 mod hierarchy;
 mod net;
 mod patch;

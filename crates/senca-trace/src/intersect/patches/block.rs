@@ -5,6 +5,7 @@ use senca_math::glam::{DVec2, DVec3};
 
 use super::hierarchy::{Candidate, SingleRay};
 use super::search::{Hit, LocalRay, SLACK};
+use super::together::Met;
 use crate::lanes::{F, LANES, M, V, bits_of, eight, lanes_of};
 use crate::{Crossing, Ray};
 
@@ -31,6 +32,9 @@ pub(crate) struct RayBlock {
     hits: u64,
     /// Room for the cells that the rays may meet.
     pub(super) candidates: Vec<Candidate>,
+    /// Their order.
+    pub(super) order: Vec<u64>,
+    pub(super) met: Option<Box<Met>>,
 }
 
 /// Rows of single precision: origin, inverse direction, first distance, last distance, direction.
@@ -51,6 +55,8 @@ impl Default for RayBlock {
             parts: [0; BLOCK],
             hits: 0,
             candidates: Vec::new(),
+            order: Vec::new(),
+            met: None,
         }
     }
 }

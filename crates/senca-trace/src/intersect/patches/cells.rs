@@ -10,11 +10,13 @@
 //! taken over the cell and a margin around it: when Newton's method ends in the margin, then there is no
 //! root in the cell.
 
+use fearless_simd::{Simd, f32x16, prelude::*};
 use senca_math::glam::{BVec3, DMat3, DVec3, DVec4, Mat3, Vec2, Vec3};
 
 use super::net::{Axis, Net};
 use super::patch::quotient;
 use super::roots::Domain;
+use crate::lanes::channels;
 
 /// A nearly flat piece of a patch.
 #[derive(Clone, Debug)]
@@ -57,7 +59,7 @@ pub(super) const MARGIN: f64 = OUTER - 1.001;
 const PLACE_ERROR: f64 = 1e-6;
 
 /// Error of a distance along the ray within the unit ball, in single precision.
-const PLACE_SLACK: f32 = 4e-6;
+pub(super) const PLACE_SLACK: f32 = 4e-6;
 
 /// What is found out about a piece while patches are divided.
 pub(super) struct Survey {
@@ -245,19 +247,12 @@ impl Cell {
         self.local_from_object.row(2)
     }
 
-    /// Whether all of the cell is on one side of a plane through `origin` across `normal`, a unit vector.
-    pub(super) fn is_beside(&self, origin: DVec3, normal: DVec3) -> bool {
+    /// Whether all of the cell is on one side of one of two planes through `origin` across unit vectors.
+    #[inline(always)]
+    pub(super) fn is_beside<S: Simd>(&self, simd: S, origin: DVec3, planes: [DVec3; 2]) -> bool {
         let Some(hull) = &self.hull else { return false };
-        let [x, y, z] = normal.as_vec3().to_array();
-        let height = normal.dot(origin) as f32;
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for i in 0..16 {
-            let above = hull[0][i] * x + hull[1][i] * y + hull[2][i] * z - height;
-            low = low.min(above);
-            high = high.max(above);
-        }
-        let error = 2.0 * PLACE_ERROR as f32;
-        low > error || high < -error
+        let hull = channels!(k => f32x16::simd_from(simd, hull[k]));
+        is_beside(simd, &hull, origin, planes[0]) || is_beside(simd, &hull, origin, planes[1])
     }
 
     /// Its rectangle.
@@ -300,6 +295,16 @@ impl Cell {
             (along & outside) != BVec3::FALSE || enter.max_element() > leave.min_element() + PLACE_SLACK;
         if misses { Meeting::Never } else { Meeting::Unknown }
     }
+}
+
+/// Whether points are on one side of a plane.
+#[inline(always)]
+fn is_beside<S: Simd>(simd: S, points: &[f32x16<S>; 3], origin: DVec3, normal: DVec3) -> bool {
+    let error = 2.0 * PLACE_ERROR as f32;
+    let n = normal.as_vec3().to_array();
+    let [x, y, z] = channels!(k => points[k] * f32x16::splat(simd, n[k]));
+    let above = x + y + z - f32x16::splat(simd, normal.dot(origin) as f32);
+    above.reduce_min() > error || above.reduce_max() < -error
 }
 
 /// What the plane of a cell tells about a ray.

@@ -19,6 +19,13 @@ struct WideNode {
     children: [Link; WIDTH],
 }
 
+impl WideNode {
+    #[inline(always)]
+    fn sides_of(&self, slot: usize) -> [[f32; 2]; 3] {
+        channels!(axis => [self.sides[axis][0][slot], self.sides[axis][1][slot]])
+    }
+}
+
 /// A node, or a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Link(u32);
@@ -148,12 +155,14 @@ impl Hierarchy {
     }
 }
 
-/// A cell whose box a beam meets.
+/// A cell whose box some rays of a bundle meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
-    /// Where its rays meet the box at the earliest.
+    /// Not after the place where one of them meets the box first.
     pub near: f32,
     pub cell: u32,
+    /// A bit for each of these rays.
+    pub rays: u64,
     /// Per axis the low and the high side of the box.
     pub sides: [[f32; 2]; 3],
 }
@@ -173,48 +182,116 @@ pub(super) struct Beam {
     pub far: f32,
 }
 
+/// The rays that go through the boxes together.
+pub(super) trait Bundle<S: Simd> {
+    /// Bounds on all of them.
+    fn beam(&self, simd: S) -> Beam;
+
+    /// Which of the rays in `among` meet a box.
+    fn meet_box(&self, simd: S, among: u64, sides: &[[f32; 2]; 3]) -> u64;
+
+    /// One of them: origin, inverse direction, first and last distance.
+    fn one(&self, ray: usize) -> ([f32; 3], [f32; 3], [f32; 2]);
+}
+
+/// Up to so many rays ask eight boxes each, more ask box after box.
+const FEW: u32 = 6;
+
 impl Hierarchy {
-    /// Puts the cells below `root` whose boxes the beam meets into `out`, unless they are more than `most`:
-    /// then the answer is `false`. Counts nodes looked at.
+    /// Puts the cells below `root` whose boxes some of `rays` meet into `out`. Counts nodes looked at.
+    ///
+    /// Of a node that many rays are at, bounds on all rays leave out most boxes, and sixteen rays at a time
+    /// are asked about the others. So rays that go all ways are soon on their own, where each asks for
+    /// itself.
     #[inline(always)]
     pub(super) fn collect<S: Simd>(
         &self,
         simd: S,
         root: Link,
-        beam: &Beam,
-        most: usize,
+        rays: u64,
+        bundle: &impl Bundle<S>,
         (out, nodes): (&mut Vec<Candidate>, &mut u64),
-    ) -> bool {
-        let slabs = BeamSlabs::new(simd, beam);
+    ) {
         out.clear();
-        let mut stack: SmallVec<[Link; 64]> = SmallVec::new();
+        let mut stack: SmallVec<[(Link, u64); 64]> = SmallVec::new();
         if let Some(cell) = root.as_cell().filter(|_| root != Link::NONE) {
             let sides = [[f32::NEG_INFINITY, f32::INFINITY]; 3];
-            out.push(Candidate { near: f32::NEG_INFINITY, cell, sides });
+            out.push(Candidate { near: f32::NEG_INFINITY, cell, rays, sides });
         } else if root != Link::NONE {
-            stack.push(root);
+            stack.push((root, rays));
         }
-        while let Some(link) = stack.pop() {
+        let slabs = BeamSlabs::new(simd, &bundle.beam(simd));
+        while let Some((link, rays)) = stack.pop() {
             *nodes += 1;
             let node = &self.nodes[link.0 as usize];
+            let mut below = Below { node, stack: &mut stack, out: &mut *out };
+            if rays.count_ones() <= FEW {
+                let (of_boxes, nears) = few_at(simd, node, rays, bundle);
+                for slot in 0..WIDTH {
+                    below.go_on(slot, of_boxes[slot], nears[slot]);
+                }
+                continue;
+            }
             let (met, nears) = slabs.meet(node);
             for slot in bits_of(met) {
                 let slot = slot % WIDTH;
-                match node.children[slot].as_cell() {
-                    None => stack.push(node.children[slot]),
-                    Some(cell) => {
-                        let side = |axis: usize, k: usize| node.sides[axis][k][slot];
-                        let sides = channels!(axis => [side(axis, 0), side(axis, 1)]);
-                        out.push(Candidate { near: nears[slot], cell, sides });
-                    }
-                }
-            }
-            if out.len() > most {
-                return false;
+                let rays = bundle.meet_box(simd, rays, &node.sides_of(slot));
+                below.go_on(slot, rays, nears[slot]);
             }
         }
-        true
     }
+}
+
+/// Where rays go from a node.
+struct Below<'a> {
+    node: &'a WideNode,
+    stack: &'a mut SmallVec<[(Link, u64); 64]>,
+    out: &'a mut Vec<Candidate>,
+}
+
+impl Below<'_> {
+    #[inline(always)]
+    fn go_on(&mut self, slot: usize, rays: u64, near: f32) {
+        if rays == 0 {
+            return;
+        }
+        let child = self.node.children[slot];
+        match child.as_cell() {
+            None => self.stack.push((child, rays)),
+            Some(cell) => self.out.push(Candidate { near, cell, rays, sides: self.node.sides_of(slot) }),
+        }
+    }
+}
+
+/// Which rays meet the boxes of a node, and where the first of them does.
+#[inline(always)]
+fn few_at<S: Simd>(
+    simd: S,
+    node: &WideNode,
+    rays: u64,
+    bundle: &impl Bundle<S>,
+) -> ([u64; WIDTH], [f32; WIDTH]) {
+    let mut of_boxes = [0; WIDTH];
+    let mut first = f32x8::splat(simd, f32::INFINITY);
+    for ray in bits_of(rays) {
+        let (origin, inverse, [low, high]) = bundle.one(ray);
+        let (mut near, mut far) = (f32x8::splat(simd, low), f32x8::splat(simd, high));
+        for axis in 0..3 {
+            // By the direction, so that boxes that are not used are beyond all distances.
+            let first = usize::from(inverse[axis] < 0.0);
+            let front = f32x8::simd_from(simd, node.sides[axis][first]);
+            let back = f32x8::simd_from(simd, node.sides[axis][1 - first]);
+            let (origin, inverse) = (f32x8::splat(simd, origin[axis]), f32x8::splat(simd, inverse[axis]));
+            near = near.max((front - origin) * inverse);
+            far = far.min((back - origin) * inverse);
+        }
+        let met = near.simd_le(far);
+        first = met.select(first.min(near), first);
+        for slot in bits_of(met.to_bitmask()) {
+            of_boxes[slot % WIDTH] |= 1 << ray;
+        }
+    }
+    (of_boxes, first.into())
 }
 
 /// A beam made ready for boxes.

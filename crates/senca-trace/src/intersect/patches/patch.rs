@@ -46,6 +46,11 @@ impl Patch {
         if self.is_rational { quotient(&jet) } else { truncated(&jet) }
     }
 
+    /// The homogeneous control points where both degrees are 3, u being the fast index.
+    pub(super) fn bicubic(&self) -> Option<&[DVec4; 16]> {
+        if self.net.size() == [4, 4] { self.net.points().try_into().ok() } else { None }
+    }
+
     /// Whether no degree is above 3, so that eight places are evaluated at once.
     pub(super) fn is_cubic(&self) -> bool {
         self.power.is_some()

@@ -77,14 +77,14 @@ impl Domain {
 pub(super) const ROUNDING: f64 = 2e-15;
 
 /// Depth up to which a ray only touches: a hundred times what rounding can do.
-const TOUCHING: f64 = 2.5e-13;
+pub(super) const TOUCHING: f64 = 2.5e-13;
 
 /// Size of a piece that is a point.
-const POINT: f64 = 1e-13;
+pub(super) const POINT: f64 = 1e-13;
 
 /// Most pieces looked at. A root needs about fifty, a touching ray some hundreds; a ray along a line of
 /// the surface would need endlessly many.
-const MOST_PIECES: usize = 3000;
+pub(super) const MOST_PIECES: usize = 3000;
 
 /// What is known of a piece.
 enum Verdict {
@@ -123,7 +123,7 @@ pub(super) fn roots(pair: Net<DVec2>, domain: Domain, is_regular: IsRegular<'_>,
 pub(super) type IsRegular<'a> = &'a dyn Fn(DVec2) -> bool;
 
 /// Where a fold as deep as rounding gave one of its two roots only, drops that one.
-fn drop_halves(touched: &Domain, out: &mut RootList) {
+pub(super) fn drop_halves(touched: &Domain, out: &mut RootList) {
     let is_near = |root: &Root| touched.holds(root.uv, 16.0 * touched.half());
     let sum: f64 = out.iter().filter(|root| is_near(root)).map(|root| root.sign).sum();
     if sum != 0.0 {

@@ -1,14 +1,15 @@
 //! From a ray to the places where it meets patches.
 
-use fearless_simd::Simd;
-use senca_math::glam::{DVec2, DVec3};
+use fearless_simd::{Simd, dispatch};
+use senca_math::glam::{DVec2, DVec3, DVec4};
 use smallvec::SmallVec;
 
 use super::PatchSurface;
 use super::block::comes_before;
 use super::cells::{Cell, MARGIN, Meeting};
+use super::grazing::{Pair, bicubic_roots};
 use super::hierarchy::{SingleRay, Visitor};
-use super::patch::Patch;
+use super::patch::{Patch, PatchJet};
 use super::roots::{Domain, ROUNDING, Root, RootList, roots};
 use crate::{Crossing, Ray};
 
@@ -206,32 +207,39 @@ impl<W: Wanted> Search<'_, W> {
     #[cold]
     #[inline(never)]
     pub(super) fn divide(&mut self, cell: &Cell) {
-        self.divide_along(cell.patch, cell.domain(), Some(cell));
+        let surface = self.surface;
+        let points: Option<&[DVec4; 16]> = surface.patches[cell.patch as usize].bicubic();
+        let Some(points) = points else {
+            let planes = self.planes(cell.normal().as_dvec3());
+            return self.divide_plainly(cell.patch, cell.domain(), planes);
+        };
+        dispatch!(surface.level, simd => self.divide_bicubic(simd, cell, points));
     }
 
     /// The roots in a part of a patch, by dividing it.
     pub(super) fn by_division(&mut self, part: u32, domain: Domain) {
-        self.divide_along(part, domain, None);
+        let planes = self.planes(DVec3::ZERO);
+        self.divide_plainly(part, domain, planes);
     }
 
-    /// As [`Search::by_division`]. One of the two planes in which the ray lies is the one that is most
-    /// square to the normal of the cell: a ray that runs over a bent piece without touching it has all of it on one side.
-    fn divide_along(&mut self, part: u32, domain: Domain, cell: Option<&Cell>) {
-        let normal = cell.map_or(DVec3::ZERO, |cell| cell.normal().as_dvec3());
-        let patch = &self.surface.patches[part as usize];
-        let (o, d) = (self.local.origin, self.local.direction);
+    /// Normals of two planes in which the ray lies. One of them is the one that is most square to the
+    /// normal of a cell: a ray that runs over a bent piece without touching it has all of it on one side.
+    fn planes(&self, normal: DVec3) -> [DVec3; 2] {
+        let d = self.local.direction;
         let across = normal - normal.dot(d) * d;
         // What is left of the normal has to be large, so that it is square to the ray to all digits.
         let is_along_surface = across.length_squared() > 0.25 * normal.length_squared();
-        let (x, y) = if is_along_surface {
+        if is_along_surface {
             let y = across.normalize();
-            (y.cross(d), y)
-        } else {
-            d.any_orthonormal_pair()
-        };
-        if cell.is_some_and(|cell| cell.is_beside(o, y) || cell.is_beside(o, x)) {
-            return;
+            return [y.cross(d), y];
         }
+        let (x, y) = d.any_orthonormal_pair();
+        [x, y]
+    }
+
+    fn divide_plainly(&mut self, part: u32, domain: Domain, [x, y]: [DVec3; 2]) {
+        let patch = &self.surface.patches[part as usize];
+        let o = self.local.origin;
         let pair = patch.net.map(|p| {
             let offset = p.truncate() - o * p.w;
             DVec2::new(x.dot(offset), y.dot(offset))
@@ -239,13 +247,36 @@ impl<W: Wanted> Search<'_, W> {
         let pair = pair.restricted(super::net::Axis::U, domain.u).restricted(super::net::Axis::V, domain.v);
         let mut found = RootList::new();
         roots(pair, domain, &|uv| patch.is_regular(uv), &mut found);
-        for mut root in found {
+        for root in found {
             let jet = super::patch::quotient(&patch.net.at(root.uv.x, root.uv.y));
-            if root.sign == 0.0 {
-                root.sign = self.surface.unit_normal(part, root.uv, &jet).dot(d).signum();
-            }
-            self.take(part, root, (jet.value - o).dot(d));
+            self.take_root(part, root, &jet);
         }
+    }
+
+    #[inline(always)]
+    fn divide_bicubic<S: Simd>(&mut self, simd: S, cell: &Cell, points: &[DVec4; 16]) {
+        let planes = self.planes(cell.normal().as_dvec3());
+        let o = self.local.origin;
+        if cell.is_beside(simd, o, planes) {
+            return;
+        }
+        let patch = &self.surface.patches[cell.patch as usize];
+        let domain = cell.domain();
+        let pair = Pair::new(simd, points, o, planes).restricted(&domain);
+        let mut found = RootList::new();
+        bicubic_roots(pair, domain, &|uv| patch.is_regular(uv), &mut found);
+        for root in found {
+            let jet = patch.at(simd, root.uv);
+            self.take_root(cell.patch, root, &jet);
+        }
+    }
+
+    fn take_root(&mut self, part: u32, mut root: Root, jet: &PatchJet) {
+        let (o, d) = (self.local.origin, self.local.direction);
+        if root.sign == 0.0 {
+            root.sign = self.surface.unit_normal(part, root.uv, jet).dot(d).signum();
+        }
+        self.take(part, root, (jet.value - o).dot(d));
     }
 }
 

@@ -1,30 +1,27 @@
 //! From many rays at once to the places where they meet patches.
 //!
 //! The fast twin of the search of one ray. Bounds on all rays of a block, a *beam*, go through the
-//! hierarchy in their place and gather the cells that any of them may meet. Where these are too many, as
-//! for rays that go all ways, the block is divided. Then cell after cell, the nearest first, sixteen rays
-//! at a time are asked whether they meet its box and then its plane, and Newton's method runs for eight
-//! of those that do, side by side.
+//! hierarchy in their place; what the beam meets is asked for by sixteen rays at a time, and only those go
+//! on that meet it themselves. Then cell after cell, the nearest first, they are asked whether they meet its
+//! plane, and Newton's method runs for eight of those that do, side by side, whichever cells of a patch they
+//! are in.
 //!
 //! Every ray is decided by its own box, plane and steps of Newton's method, with the same bounds as alone,
 //! and of its hits the one counts that comes before all others, so nothing depends on the rays beside it.
 //!
-//! Source of the beams: interval arithmetic on packets, Wald et al. 2006, Boulos et al. 2006.
+//! Source of the beams: interval arithmetic on packets, Wald et al. 2006, Boulos et al. 2006; of sets of
+//! rays that thin out on their way down, Wald et al. 2007.
 
 use fearless_simd::{Simd, f32x16, prelude::*};
-use smallvec::SmallVec;
 
 use super::block::{BLOCK, DIRECTION, FAR, INVERSE, NEAR, RayBlock, WIDE};
-use super::cells::{Cell, MARGIN};
-use super::hierarchy::{Beam, Candidate};
+use super::cells::{Cell, MARGIN, PLACE_SLACK};
+use super::hierarchy::{Beam, Bundle, Candidate};
 use super::search::{Hit, Nearest, Newton, SETTLED, Search, WIDEST, settle};
 use super::{PatchSurface, SINGULAR};
-use crate::lanes::{F, LANES, M, V, bits_of, channels, first_lanes, lanes_of, larger};
+use crate::lanes::{F, LANES, M, V, bits_of, channels, eight, first_lanes, lanes_of, larger};
 use crate::{Counters, Crossing};
 use senca_math::glam::{DVec2, Mat3};
-
-/// Cells that the rays of a block may meet before it is divided into four.
-const MOST_CELLS: usize = 64;
 
 impl PatchSurface {
     /// The nearest hits of the rays of a block.
@@ -76,80 +73,90 @@ impl PatchSurface {
     #[inline(always)]
     fn search_block<S: Simd, const ANY: bool>(&self, simd: S, block: &mut RayBlock, counters: &mut Counters) {
         block.prepare(simd, self.center, self.scale);
-        let mut candidates = std::mem::take(&mut block.candidates);
-        let mut bundles: SmallVec<[(u64, usize); 16]> = SmallVec::new();
-        bundles.push((block.live(), BLOCK));
-        while let Some((bundle, width)) = bundles.pop() {
-            if bundle == 0 {
-                continue;
-            }
-            let beam = beam_of(simd, block, bundle);
-            let most = if width > 1 { MOST_CELLS } else { usize::MAX };
-            let out = (&mut candidates, &mut counters.nodes);
-            if self.hierarchy.collect(simd, self.root, &beam, most, out) {
-                self.bundle::<S, ANY>(simd, block, bundle, &mut candidates, counters);
-                continue;
-            }
-            let quarter = width / 4;
-            let ones = u64::MAX >> (64 - quarter);
-            bundles.extend((0..BLOCK / quarter).map(|k| (bundle & ones << (k * quarter), quarter)));
+        if block.live() == 0 {
+            return;
         }
-        block.candidates = candidates;
+        let mut candidates = std::mem::take(&mut block.candidates);
+        let out = (&mut candidates, &mut counters.nodes);
+        self.hierarchy.collect(simd, self.root, block.live(), &*block, out);
+        let mut order = std::mem::take(&mut block.order);
+        order.clear();
+        order.extend(candidates.iter().enumerate().map(|(i, c)| u64::from(ordered(c.near)) << 32 | i as u64));
+        if !ANY {
+            order.sort_unstable();
+        }
+        let mut met = block.met.take().unwrap_or_default();
+        met.clear();
+        let candidates_in_order = order.iter().map(|&key| &candidates[key as u32 as usize]);
+        self.cells_met::<S, ANY>(simd, block, candidates_in_order, &mut met, counters);
+        (block.candidates, block.order, block.met) = (candidates, order, Some(met));
     }
 
-    /// What some of the rays meet in the cells that they may meet.
+    /// What rays meet in the cells whose boxes they meet.
     #[inline(always)]
-    fn bundle<S: Simd, const ANY: bool>(
+    fn cells_met<'a, S: Simd, const ANY: bool>(
         &self,
         simd: S,
         block: &mut RayBlock,
-        bundle: u64,
-        candidates: &mut [Candidate],
+        candidates: impl Iterator<Item = &'a Candidate>,
+        met: &mut Met,
         counters: &mut Counters,
     ) {
-        if !ANY {
-            candidates.sort_unstable_by(|a, b| a.near.total_cmp(&b.near));
-        }
-        let mut met = Met::default();
-        let mut open = bundle;
+        let live = block.live();
+        let mut open = live;
         let mut farthest = f32::INFINITY;
-        for candidate in &*candidates {
+        let mut patch = u32::MAX;
+        for candidate in candidates {
             if candidate.near > farthest {
                 break;
             }
-            met.clear();
             let cell = &self.cells[candidate.cell as usize];
+            if cell.patch != patch {
+                self.newton_all(simd, block, met, ANY);
+                patch = cell.patch;
+            }
+            let mut unknown = 0;
             for first in (0..BLOCK).step_by(WIDE) {
-                let sixteen = open >> first & 0xffff;
+                let sixteen = (candidate.rays & open) >> first & 0xffff;
                 if sixteen != 0 {
                     let near = box_met(simd, block, first, &candidate.sides) & sixteen;
                     if near != 0 {
                         counters.tests += u64::from(near.count_ones());
-                        meet_plane(simd, block, first, near, cell, &mut met);
+                        unknown |= meet_plane(simd, block, first, near, (cell, candidate.cell), met) << first;
                     }
                 }
             }
-            if met.len == 0 && met.unknown == 0 {
+            for lane in bits_of(unknown) {
+                self.divide(block, lane, cell, ANY);
+            }
+            let is_full = met.len >= LANES;
+            while met.len >= LANES {
+                self.newton_eight(simd, block, met, met.len - LANES, ANY);
+            }
+            if !is_full && unknown == 0 {
                 continue;
             }
-            for first in (0..met.len).step_by(LANES) {
-                self.newton_eight(simd, block, cell, &mut met, first, ANY);
-            }
-            for lane in bits_of(met.unknown) {
-                self.alone(simd, block, lane, cell, ANY);
-            }
             if ANY {
-                open &= !block.hits();
+                open = live & !block.hits();
                 if open == 0 {
                     return;
                 }
             } else {
-                farthest = greatest(simd, &block.single[FAR], bundle);
+                farthest = greatest(simd, &block.single[FAR], live);
             }
+        }
+        self.newton_all(simd, block, met, ANY);
+    }
+
+    /// Newton's method for all that wait for it.
+    #[inline(always)]
+    fn newton_all<S: Simd>(&self, simd: S, block: &mut RayBlock, met: &mut Met, any: bool) {
+        while met.len > 0 {
+            self.newton_eight(simd, block, met, met.len.saturating_sub(LANES), any);
         }
     }
 
-    /// A ray in a cell of which vectors say nothing certain.
+    /// A ray in a cell of a patch that is not evaluated eight places at once.
     #[cold]
     #[inline(never)]
     fn alone<S: Simd>(&self, simd: S, block: &mut RayBlock, lane: usize, cell: &Cell, any: bool) {
@@ -162,7 +169,8 @@ impl PatchSurface {
         }
     }
 
-    /// A ray in a cell in which Newton's method does not end, or ends beyond what is known.
+    /// A ray in a cell of which nothing is known, or in which Newton's method does not end, or ends beyond what is
+    /// known.
     #[cold]
     #[inline(never)]
     fn divide(&self, block: &mut RayBlock, lane: usize, cell: &Cell, any: bool) {
@@ -177,28 +185,22 @@ impl PatchSurface {
 
     /// Newton's method for eight rays in a cell: the twin of that of one ray.
     #[inline(always)]
-    fn newton_eight<S: Simd>(
-        &self,
-        simd: S,
-        block: &mut RayBlock,
-        cell: &Cell,
-        met: &mut Met,
-        first: usize,
-        any: bool,
-    ) {
+    fn newton_eight<S: Simd>(&self, simd: S, block: &mut RayBlock, met: &mut Met, first: usize, any: bool) {
         let count = (met.len - first).min(LANES);
-        let lanes = met.lanes(first);
-        let patch = &self.patches[cell.patch as usize];
+        met.len = first;
+        let lanes = met.lanes(first, count);
+        let cells: [&Cell; LANES] =
+            eight!(k => &self.cells[met.cells[first + if k < count { k } else { 0 }] as usize]);
+        let part = cells[0].patch;
+        let patch = &self.patches[part as usize];
         if !patch.is_cubic() {
-            for &lane in &lanes[..count] {
+            for (&lane, cell) in lanes.iter().zip(cells).take(count) {
                 self.alone(simd, block, usize::from(lane), cell, any);
             }
             return;
         }
-        let domain = cell.domain();
-        let (center, half) = (domain.center(), domain.half());
-        let (center_u, center_v) = (F::splat(simd, center.x), F::splat(simd, center.y));
-        let (half_u, half_v) = (F::splat(simd, half.x), F::splat(simd, half.y));
+        let of_cells = |k: usize| F::load_array(simd, eight!(i => f64::from(cells[i].uv[k])));
+        let (center_u, center_v, half_u, half_v) = (of_cells(0), of_cells(1), of_cells(2), of_cells(3));
         let [o, d] = block.lines(simd, &lanes);
         let mut u = center_u + half_u * met.near(simd, 0, first);
         let mut v = center_v + half_v * met.near(simd, 1, first);
@@ -242,14 +244,21 @@ impl PatchSurface {
         let all = (1u64 << count) - 1;
         let left = all & !(within | outside).to_bitmask();
         let numbers = [u.to_array(), v.to_array(), distance.to_array()];
-        block.take(&lanes, within.to_bitmask(), cell.patch, numbers, any);
+        block.take(&lanes, within.to_bitmask() & all, part, numbers, any);
         if left != 0 {
             let errors = [error_u.to_array(), error_v.to_array()];
             let settled = settled.to_bitmask();
             for k in lanes_of(left) {
                 let [u, v, distance] = channels!(i => numbers[i][k]);
                 let end = (settled >> k & 1 == 1).then_some((DVec2::new(u, v), distance));
-                self.at_border(block, usize::from(lanes[k]), cell, end, [errors[0][k], errors[1][k]], any);
+                self.at_border(
+                    block,
+                    usize::from(lanes[k]),
+                    cells[k],
+                    end,
+                    [errors[0][k], errors[1][k]],
+                    any,
+                );
             }
         }
     }
@@ -283,33 +292,35 @@ impl PatchSurface {
     }
 }
 
-/// Rays of which is known that they meet a cell at most once.
-struct Met {
-    /// Their numbers, and where in the frame of the cell, about.
-    numbers: [u8; BLOCK + LANES],
-    near: [[f32; BLOCK + LANES]; 2],
+/// Rays of which is known that they meet a cell at most once; all cells are of one patch.
+#[derive(Clone, Debug)]
+pub(super) struct Met {
+    /// Their numbers, the cells, and where in the frame of the cell, about.
+    numbers: [u8; ROOM],
+    cells: [u32; ROOM],
+    near: [[f32; ROOM]; 2],
     len: usize,
-    /// Rays of which nothing is known.
-    unknown: u64,
 }
+
+/// Fewer than eight that wait, those of one more cell, and eight that are read beyond the last.
+const ROOM: usize = BLOCK + 2 * LANES;
 
 impl Default for Met {
     fn default() -> Self {
-        Self { numbers: [0; BLOCK + LANES], near: [[0.0; BLOCK + LANES]; 2], len: 0, unknown: 0 }
+        Self { numbers: [0; ROOM], cells: [0; ROOM], near: [[0.0; ROOM]; 2], len: 0 }
     }
 }
 
 impl Met {
     #[inline(always)]
     fn clear(&mut self) {
-        (self.len, self.unknown) = (0, 0);
+        self.len = 0;
     }
 
-    /// Eight numbers from `first` on; behind the last there is the last again.
+    /// `count` numbers from `first` on; behind the last there is the first again.
     #[inline(always)]
-    fn lanes(&self, first: usize) -> [u8; LANES] {
+    fn lanes(&self, first: usize, count: usize) -> [u8; LANES] {
         let mut lanes = [self.numbers[first]; LANES];
-        let count = (self.len - first).min(LANES);
         lanes[..count].copy_from_slice(&self.numbers[first..][..count]);
         lanes
     }
@@ -343,9 +354,17 @@ fn box_met<S: Simd>(simd: S, block: &RayBlock, first: usize, sides: &[[f32; 2]; 
     near.simd_le(far).to_bitmask()
 }
 
-/// What the plane of a cell tells about sixteen rays: see [`Cell::meets`].
+/// What the plane of a cell tells about sixteen rays: see [`Cell::meets`]. Gathers those that meet it once,
+/// and returns those of which nothing is known.
 #[inline(always)]
-fn meet_plane<S: Simd>(simd: S, block: &RayBlock, first: usize, rays: u64, cell: &Cell, met: &mut Met) {
+fn meet_plane<S: Simd>(
+    simd: S,
+    block: &RayBlock,
+    first: usize,
+    rays: u64,
+    (cell, number): (&Cell, u32),
+    met: &mut Met,
+) -> u64 {
     let rows = rows_of(&cell.local_from_object);
     let center = cell.center.to_array();
     let [ox, oy, oz] = channels!(k => row(simd, block, k, first) - f32x16::splat(simd, center[k]));
@@ -361,21 +380,45 @@ fn meet_plane<S: Simd>(simd: S, block: &RayBlock, first: usize, rays: u64, cell:
     // Not a number when a ray runs along the plane.
     let least = f32x16::splat(simd, 0.95);
     let once = (reach_x.simd_lt(least) & reach_y.simd_lt(least)).to_bitmask() & rays;
-    met.unknown |= (rays & !once) << first;
+    let mut unknown = rays & !once;
+    if unknown != 0 && cell.tilt < f32::INFINITY {
+        unknown &= meet_frame(simd, cell, &o, &d);
+    }
     let (inner, one) = (f32x16::splat(simd, cell.inner), f32x16::splat(simd, 1.0));
     let inside = (x.abs() - inner * reach_x).simd_le(one) & (y.abs() - inner * reach_y).simd_le(one);
     let inside = inside.to_bitmask() & once;
     if inside == 0 {
-        return;
+        return unknown;
     }
     let (x, y): ([f32; WIDE], [f32; WIDE]) = (x.into(), y.into());
     for k in bits_of(inside) {
-        let (k, len) = (k % WIDE, met.len % BLOCK);
+        let (k, len) = (k % WIDE, met.len % (BLOCK + LANES));
         met.numbers[len] = (first + k) as u8;
+        met.cells[len] = number;
         met.near[0][len] = x[k];
         met.near[1][len] = y[k];
         met.len = len + 1;
     }
+    unknown
+}
+
+/// Which of sixteen rays, given in the frame of a cell, can meet it at all: the twin of what
+/// [`Cell::meets`] asks of rays along the surface.
+#[inline(always)]
+fn meet_frame<S: Simd>(simd: S, cell: &Cell, o: &[f32x16<S>; 3], d: &[f32x16<S>; 3]) -> u64 {
+    let extent = cell.extent.to_array();
+    let mut enter = f32x16::splat(simd, f32::NEG_INFINITY);
+    let mut leave = f32x16::splat(simd, f32::INFINITY);
+    let mut outside = 0;
+    for k in 0..3 {
+        let side = f32x16::splat(simd, extent[k]);
+        let along = d[k].abs().simd_le(f32x16::splat(simd, 1e-20));
+        outside |= (along & o[k].abs().simd_gt(side)).to_bitmask();
+        let (a, b) = ((-side - o[k]) / d[k], (side - o[k]) / d[k]);
+        enter = along.select(enter, enter.max(a.min(b)));
+        leave = along.select(leave, leave.min(a.max(b)));
+    }
+    enter.simd_le(leave + f32x16::splat(simd, PLACE_SLACK)).to_bitmask() & !outside
 }
 
 /// The rows of a matrix.
@@ -430,6 +473,37 @@ fn among<S: Simd>(simd: S, rays: u64, first: usize) -> fearless_simd::mask32x16<
 fn ends_of_three<S: Simd>(simd: S, block: &RayBlock, k: usize, rays: u64) -> [[f32; 3]; 2] {
     let axes = channels!(axis => ends(simd, &block.single[k + axis], rays));
     [channels!(axis => axes[axis][0]), channels!(axis => axes[axis][1])]
+}
+
+impl<S: Simd> Bundle<S> for RayBlock {
+    #[inline(always)]
+    fn beam(&self, simd: S) -> Beam {
+        beam_of(simd, self, self.live())
+    }
+
+    #[inline(always)]
+    fn meet_box(&self, simd: S, among: u64, sides: &[[f32; 2]; 3]) -> u64 {
+        let mut met = 0;
+        for first in (0..BLOCK).step_by(WIDE) {
+            if among >> first & 0xffff != 0 {
+                met |= box_met(simd, self, first, sides) << first;
+            }
+        }
+        met & among
+    }
+
+    #[inline(always)]
+    fn one(&self, ray: usize) -> ([f32; 3], [f32; 3], [f32; 2]) {
+        let at = |k: usize| self.single[k][ray % BLOCK];
+        (channels!(k => at(k)), channels!(k => at(INVERSE + k)), [at(NEAR), at(FAR)])
+    }
+}
+
+/// A float as an integer of the same order.
+#[inline(always)]
+fn ordered(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 /// Bounds on some rays of a block.
