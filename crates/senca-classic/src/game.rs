@@ -6,11 +6,13 @@ mod clip;
 mod color_map;
 mod exact_frame;
 mod fill;
+mod film;
 mod fixed;
 mod flight;
 mod frame;
 mod line;
 mod matrix;
+mod measure;
 mod project;
 mod reference;
 mod rotate;
@@ -25,11 +27,15 @@ pub use clip::{Bounds, ClippedLine, Search, clip_line, clip_line_to_screen, clip
 pub use color_map::{ColorMap, LARGEST_SIDE};
 pub use exact_frame::{draw_frame_exactly, view_exact};
 pub use fill::{SpanFill, fill_flat, fill_shaded};
+pub use film::{FILM_DELAY, FilmError, FilmFormat, LONGEST_FILM, film, sheet};
 pub use fixed::{Fixed, FixedFormat, ROTATION_BITS, positional_value};
 pub use flight::{Flight, Moment, SCREEN, Show};
 pub use frame::{Arithmetic, Counters, Stages, Surface, Viewer, draw_frame};
 pub use line::{Bresenham, draw_line, draw_line_by_address, pixels_by_columns, pixels_by_longer_range};
 pub use matrix::Matrix;
+pub use measure::{
+    ErrorStatistics, MEASURED_MAPPINGS, MEASURED_MOMENTS, Measures, Wobble, measure, wall_errors,
+};
 pub use project::{DepthKept, FARTHEST_PIXEL, Lens, Projection, view_angle};
 pub use reference::{ExactPlane, clip_exact, for_each_pixel_within, project_corners};
 pub use rotate::{Coefficient, Number, Rotation, SinCos, rotate_in_plane, scale, translate};
