@@ -6,3 +6,4 @@
 //! Everything here is display-referred, as it was then: a colour is what the screen shows.
 
 pub mod game;
+pub mod lab;
