@@ -22,6 +22,7 @@ pub mod fractal;
 mod input;
 pub mod line;
 pub mod polygon;
+pub mod programs;
 pub mod shading;
 pub mod solid;
 pub mod vectors;

@@ -156,6 +156,11 @@ pub fn modulus([x, y]: Complex) -> f64 {
     (x * x + y * y).sqrt()
 }
 
+/// Whether z stays: |z| is below the bound. Where |z| is no number any more it does not.
+fn stays(modulus: f64, bound: f64) -> bool {
+    modulus < bound
+}
+
 /// How a point leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leaving {
@@ -173,8 +178,7 @@ pub fn leave(parameters: &Parameters, x: usize, y: usize) -> Leaving {
     loop {
         z = next(z, c);
         let r = modulus(z);
-        // Left with r that is no number, too.
-        if !(r < parameters.bound && k < parameters.iterations) {
+        if !(stays(r, parameters.bound) && k < parameters.iterations) {
             return Leaving { k, modulus: r };
         }
         k += 1;
@@ -188,7 +192,7 @@ pub fn trace(parameters: &Parameters, mut z: Complex, c: Complex) -> Vec<f64> {
     for _ in 0..=parameters.iterations {
         z = next(z, c);
         moduli.push(modulus(z));
-        if moduli.last().is_none_or(|r| !(*r < parameters.bound)) {
+        if moduli.last().is_none_or(|&r| !stays(r, parameters.bound)) {
             break;
         }
     }
@@ -255,7 +259,7 @@ pub fn literal_counts(parameters: &Parameters, control: &Control<'_>) -> Result<
         for x in 0..width {
             let Leaving { k, modulus } = leave(parameters, x, y);
             let is_last = k == parameters.iterations;
-            counts.left_at_last += usize::from(is_last && !(modulus < parameters.bound));
+            counts.left_at_last += usize::from(is_last && !stays(modulus, parameters.bound));
             counts.k.push(k);
             counts.moduli.push(if is_last { 0.0 } else { modulus });
         }

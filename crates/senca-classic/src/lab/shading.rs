@@ -110,17 +110,17 @@ impl PhongModel {
     /// Intensity (7.9) for unit vectors: the normal, to the light, to the viewer.
     #[must_use]
     pub fn reflected(&self, normal: Row3, to_light: Row3, to_viewer: Row3) -> f64 {
-        self.ambient * self.ambient_share + self.from_light(normal, to_light, to_viewer)
+        self.ambient * self.ambient_share + self.light_share(normal, to_light, to_viewer)
     }
 
     /// Intensity with the distance `r` of the viewer and a constant `k` (7.10). The manual takes the
     /// distance of the viewer, since its light is infinitely far away.
     #[must_use]
     pub fn reflected_at(&self, normal: Row3, to_light: Row3, to_viewer: Row3, r: f64, k: f64) -> f64 {
-        self.ambient * self.ambient_share + self.from_light(normal, to_light, to_viewer) / (r + k)
+        self.ambient * self.ambient_share + self.light_share(normal, to_light, to_viewer) / (r + k)
     }
 
-    fn from_light(&self, normal: Row3, to_light: Row3, to_viewer: Row3) -> f64 {
+    fn light_share(&self, normal: Row3, to_light: Row3, to_viewer: Row3) -> f64 {
         let diffuse = dot(to_light, normal).max(0.0);
         // Without the clamp an even exponent would light the side that the mirrored ray does not reach.
         let specular = dot(mirrored(normal, to_light), to_viewer).max(0.0).powf(self.exponent);

@@ -21,7 +21,7 @@ use senca_math::{Cancelled, Control};
 
 use super::fixed::Fixed;
 use super::wide::{Wide, WideComplex};
-use super::{Complex, Counts, modulus};
+use super::{Complex, Counts, modulus, stays};
 
 /// Greatest bound of |z|: squares then fit before the point of [`Fixed`].
 pub const MAX_BOUND: f64 = 1e9;
@@ -110,7 +110,7 @@ impl Reference {
             }
             let rounded = wide.to_f64();
             reference.z.push(rounded);
-            if n > 0 && !(modulus(rounded) < view.bound) {
+            if n > 0 && !stays(modulus(rounded), view.bound) {
                 break;
             }
             z = next_fixed(&z, c);
@@ -200,7 +200,7 @@ impl References {
             let [zx, zy] = place.reference.z[place.n];
             let z = [zx + d[0], zy + d[1]];
             let (z_square, d_square) = (z[0] * z[0] + z[1] * z[1], d[0] * d[0] + d[1] * d[1]);
-            if !(z_square.sqrt() < view.bound && place.k < view.iterations) {
+            if !(stays(z_square.sqrt(), view.bound) && place.k < view.iterations) {
                 return (Pause::Left(z), WideComplex::ZERO);
             }
             place.k += 1;
@@ -227,7 +227,7 @@ impl References {
             place.n += 1;
             let z = place.reference.wide(place.n).add(d);
             let rounded = z.to_f64();
-            if !(modulus(rounded) < view.bound && place.k < view.iterations) {
+            if !(stays(modulus(rounded), view.bound) && place.k < view.iterations) {
                 return (Pause::Left(rounded), d);
             }
             place.k += 1;
@@ -270,7 +270,7 @@ pub fn brute_counts(view: &DeepView, control: &Control<'_>) -> Result<Counts, Ca
         loop {
             z = next_fixed(&z, &c);
             let rounded = [z[0].to_f64(), z[1].to_f64()];
-            if !(modulus(rounded) < view.bound && k < view.iterations) {
+            if !(stays(modulus(rounded), view.bound) && k < view.iterations) {
                 return (k, rounded);
             }
             k += 1;
@@ -295,7 +295,7 @@ fn all_pixels(
     let rows: Vec<Vec<(u32, Complex)>> = (0..height).into_par_iter().map(row).collect::<Result<_, _>>()?;
     let pixels = || rows.iter().flatten();
     let is_last = |k: u32| k == view.iterations;
-    let left = |z: Complex| !(modulus(z) < view.bound);
+    let left = |z: Complex| !stays(modulus(z), view.bound);
     Ok(Counts {
         size: view.size,
         iterations: view.iterations,

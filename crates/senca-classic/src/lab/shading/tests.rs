@@ -1,3 +1,5 @@
+#![expect(clippy::approx_constant, reason = "numbers as they are printed")]
+
 use super::*;
 use crate::lab::bezier::visible_faces;
 use crate::lab::solid::tests::normalized_cube;

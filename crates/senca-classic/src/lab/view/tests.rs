@@ -1,3 +1,5 @@
+#![expect(clippy::approx_constant, reason = "numbers as they are printed")]
+
 use super::*;
 use crate::lab::solid::tests::{cube, normalized_cube};
 use crate::lab::vectors::{add, dot};
