@@ -7,3 +7,4 @@
 
 pub mod game;
 pub mod lab;
+pub mod thesis;
