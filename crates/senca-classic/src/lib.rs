@@ -7,4 +7,5 @@
 
 pub mod game;
 pub mod lab;
+pub mod polygon;
 pub mod thesis;

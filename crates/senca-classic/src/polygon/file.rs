@@ -1,0 +1,125 @@
+//! Polygons as text: a vertex a line, `x y z b`; a line with nothing on it ends a polygon; remarks in
+//! braces or behind `#`.
+
+use std::fmt::Write;
+
+use senca_io::{Location, ReadError};
+
+use super::ScreenVertex;
+
+/// Largest coordinate, depth and intensity.
+const LARGEST: i32 = 1 << 20;
+
+/// Reads polygons.
+///
+/// # Errors
+/// With line and column for what is no whole number, or beyond a million, and for polygons of fewer
+/// than three vertices.
+pub fn parse_polygons(name: &str, text: &str) -> Result<Vec<Vec<ScreenVertex>>, ReadError> {
+    let mut polygons = Vec::new();
+    let mut open: Vec<ScreenVertex> = Vec::new();
+    let mut last = 1;
+    for (line, number) in text.lines().zip(1u32..) {
+        let content = line.split(['{', '#']).next().unwrap_or_default();
+        if !content.trim().is_empty() {
+            open.push(vertex(name, number, content)?);
+            last = number;
+        } else if line.trim().is_empty() {
+            close(name, last, &mut open, &mut polygons)?;
+        }
+    }
+    close(name, last, &mut open, &mut polygons)?;
+    Ok(polygons)
+}
+
+fn close(
+    name: &str,
+    line: u32,
+    open: &mut Vec<ScreenVertex>,
+    polygons: &mut Vec<Vec<ScreenVertex>>,
+) -> Result<(), ReadError> {
+    match open.len() {
+        0 => Ok(()),
+        1 | 2 => {
+            let message = format!("a polygon has at least 3 vertices, not {}", open.len());
+            Err(ReadError::malformed(Location::text(name, line, 1), message))
+        }
+        _ => {
+            polygons.push(std::mem::take(open));
+            Ok(())
+        }
+    }
+}
+
+fn vertex(name: &str, line: u32, content: &str) -> Result<ScreenVertex, ReadError> {
+    let column = |word: &str| {
+        let before = word.as_ptr() as usize - content.as_ptr() as usize;
+        content[..before].chars().count() as u32 + 1
+    };
+    let refuse =
+        |column: u32, message: String| Err(ReadError::malformed(Location::text(name, line, column), message));
+    let mut words = content.split_whitespace();
+    let mut numbers = [0; 4];
+    for (number, what) in numbers.iter_mut().zip(["x", "y", "z", "b"]) {
+        let Some(word) = words.next() else {
+            let end = content.trim_end().chars().count() as u32 + 1;
+            return refuse(end, format!("expected {what}, found the end of the line"));
+        };
+        match word.parse::<i32>() {
+            Ok(value) if value.abs() <= LARGEST => *number = value,
+            _ => {
+                let expected = format!("expected {what}, a whole number up to {LARGEST}, found \"{word}\"");
+                return refuse(column(word), expected);
+            }
+        }
+    }
+    if let Some(word) = words.next() {
+        return refuse(column(word), format!("expected the end of the line, found \"{word}\""));
+    }
+    let [x, y, z, b] = numbers;
+    Ok(ScreenVertex { x, y, z, b })
+}
+
+/// Writes polygons as they are read.
+#[must_use]
+pub fn polygons_text(polygons: &[Vec<ScreenVertex>]) -> String {
+    let mut text = String::new();
+    for (number, polygon) in polygons.iter().enumerate() {
+        if number > 0 {
+            text.push('\n');
+        }
+        for ScreenVertex { x, y, z, b } in polygon {
+            let _ = writeln!(text, "{x} {y} {z} {b}");
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygons_survive_writing() {
+        let text = "# x y z b\n1 2 3 4 {first}\n5 6 7 8\n-9 10 11 12\n\n\n0 0 0 0\n{a remark only}\n1 0 0 0\n0 1 0 0\n";
+        let polygons = parse_polygons("p", text).expect("reads");
+        assert_eq!(polygons.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3]);
+        assert_eq!(polygons[0][2], ScreenVertex::new(-9, 10, 11, 12));
+        assert_eq!(parse_polygons("p", &polygons_text(&polygons)).expect("reads"), polygons);
+        assert!(parse_polygons("p", "").expect("reads").is_empty());
+    }
+
+    #[test]
+    fn errors_say_where() {
+        for (text, expected) in [
+            ("1 2 3", "p:1:6: expected b, found the end of the line"),
+            ("1 2 3 4\n 1 a 3 4", "p:2:4: expected y, a whole number up to 1048576, found \"a\""),
+            ("1 2 3 4 5", "p:1:9: expected the end of the line, found \"5\""),
+            ("1 2 3.5 4", "p:1:5: expected z, a whole number up to 1048576, found \"3.5\""),
+            ("1 2 -9999999 4", "p:1:5: expected z, a whole number up to 1048576, found \"-9999999\""),
+            ("1 2 3 4\n1 2 3 4\n\n", "p:2:1: a polygon has at least 3 vertices, not 2"),
+        ] {
+            assert_eq!(parse_polygons("p", text).expect_err(text).to_string(), expected);
+        }
+    }
+}
