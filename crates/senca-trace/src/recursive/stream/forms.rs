@@ -94,6 +94,7 @@ pub(super) struct Other {
     bounds: Aabb,
     pub(super) object: u32,
     pub(super) rank: f64,
+    is_opaque: bool,
 }
 
 /// The nearest hits of eight rays.
@@ -155,7 +156,8 @@ impl Forms {
             texture: [DVec2::ZERO; 3],
         };
         let rank = self.rank(rank);
-        let other = Other { bounds: object.bounds_world, object: number, rank };
+        let is_opaque = object.opaque;
+        let other = Other { bounds: object.bounds_world, object: number, rank, is_opaque };
         if is_patched { self.patched.push(other) } else { self.others.push(other) }
     }
 
@@ -433,6 +435,17 @@ impl Forms {
             clear &= !M::from_bitmask(simd, blocked);
         }
         clear
+    }
+
+    /// Which rays pass through the box of something opaque made of patches before `t_max`.
+    #[inline(always)]
+    pub(super) fn meet_patched<S: Simd>(&self, simd: S, o: V<S>, d: V<S>, t_max: F<S>) -> M<S> {
+        let (zero, reciprocal) = (F::splat(simd, 0.0), reciprocal(simd, d));
+        let mut met = M::splat(simd, false);
+        for other in self.patched.iter().filter(|other| other.is_opaque) {
+            met |= other.meet(simd, o, reciprocal, zero, t_max);
+        }
+        met
     }
 
     /// The hit of a ray with what has this rank.

@@ -22,7 +22,7 @@ mod shade;
 #[cfg(test)]
 mod tests;
 
-use fearless_simd::{Level, Simd, dispatch, i64x8, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, i64x8, mask32x8, prelude::*, u32x8};
 use senca_math::glam::{DVec3, DVec4};
 use senca_math::{LinearRgb, ViewKind};
 
@@ -50,8 +50,11 @@ const SHADOW_LISTS: usize = 8;
 /// Rays towards lights that are kept before they are looked at.
 const MOST_SHADOWS: usize = 1024;
 
-/// Samples that are followed together.
-const BATCH: usize = 1024;
+/// Samples that are followed together. More are no faster, and take more fresh memory.
+const BATCH: usize = 256;
+
+/// Most stretches of ranks that are compared with each rank.
+const MOST_STRETCHES: usize = 8;
 
 /// Most surfaces that packets of rays are tested against one after the other.
 const MOST_FORMS: usize = 48;
@@ -64,6 +67,8 @@ pub(super) struct Stream {
     looks: Vec<Look>,
     /// Group of the rays that meet what has a rank, by rank + 1.
     groups: Vec<u8>,
+    /// The same as stretches of ranks: the first and the last, and the group.
+    stretches: Vec<(i64, i64, usize)>,
     lamps: Vec<Lamp>,
     /// Whether there are few enough surfaces to test packets against all.
     is_flat: bool,
@@ -105,7 +110,7 @@ impl Desk {
         }
         self.shadows.resize_with(SHADOW_LISTS, Rays::default);
         for list in &mut self.lists {
-            list.resize(list.len().max(count), 0);
+            list.resize(list.len().max(count + LANES), 0);
         }
         if self.t.len() < count + LANES {
             self.t.resize(count + LANES, 0.0);
@@ -154,17 +159,35 @@ impl Stream {
             (Kind::Patches, Way::Constant) if is_of_one(&world.objects()[rank.object as usize]) => PATCHES,
             _ => GENERAL,
         };
-        let groups = std::iter::once(LEAVING).chain(forms.ranks.iter().map(group));
+        let groups: Vec<u8> =
+            std::iter::once(LEAVING).chain(forms.ranks.iter().map(group)).map(|group| group as u8).collect();
         Some(Self {
             level: Level::new(),
             is_flat: forms.len() <= MOST_FORMS,
-            groups: groups.map(|group| group as u8).collect(),
+            stretches: stretches_of(&groups),
+            groups,
             forms,
             looks,
             lamps: (0..tracer.lights.len()).map(|light| Lamp::of(tracer, light)).collect(),
             asks: tracer.blockers != Blockers::All,
         })
     }
+
+    /// Whether rays towards lights are looked at as soon as they are made, but for those near patches.
+    fn shades_at_once(&self) -> bool {
+        self.is_flat && !self.asks
+    }
+}
+
+/// Ranks that follow each other and have the same group; the rank of nothing is -1.
+fn stretches_of(groups: &[u8]) -> Vec<(i64, i64, usize)> {
+    let mut first = -1;
+    let stretch = |of: &[u8]| {
+        let stretch = (first, first + of.len() as i64 - 1, usize::from(of[0]) % GROUPS);
+        first += of.len() as i64;
+        stretch
+    };
+    groups.chunk_by(|a, b| a == b).map(stretch).collect()
 }
 
 impl Tracer<'_> {
@@ -265,7 +288,11 @@ impl Tracer<'_> {
             #[inline(always)]
             || self.find(simd, stream, &mut pass),
         );
-        self.sort(stream, &mut pass);
+        simd.vectorize(
+            #[inline(always)]
+            || self.sort(simd, stream, &mut pass),
+        );
+        self.leave_stream(&mut pass);
         simd.vectorize(
             #[inline(always)]
             || self.balls(simd, stream, &mut pass),
@@ -319,19 +346,41 @@ impl Tracer<'_> {
         }
     }
 
-    /// Sorts rays by what they meet. Those that meet nothing are done with.
-    fn sort(&self, stream: &Stream, pass: &mut Pass<'_>) {
+    /// Sorts rays by what they meet.
+    #[inline(always)]
+    fn sort<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
         let Desk { rays, rank, lists, .. } = &mut *pass.desk;
         let count = rays.len();
         let mut lengths = [0; GROUPS];
-        for (number, rank) in rank[..count].iter().enumerate() {
-            // The rank of nothing is -1.
-            let group = usize::from(stream.groups[(*rank + 1) as usize]) % GROUPS;
-            lists[group][lengths[group]] = number as u32;
-            lengths[group] += 1;
+        if stream.stretches.len() > MOST_STRETCHES {
+            for (number, rank) in rank[..count].iter().enumerate() {
+                let group = usize::from(stream.groups[(*rank + 1) as usize]) % GROUPS;
+                lists[group][lengths[group]] = number as u32;
+                lengths[group] += 1;
+            }
+            pass.desk.lengths = lengths;
+            return;
+        }
+        for first in (0..count).step_by(LANES) {
+            let ranks = i64x8::from_slice(simd, &rank[first..][..LANES]);
+            let live = first_lanes(simd, count - first).to_bitmask();
+            let mut members = [0; GROUPS];
+            for &(low, high, group) in &stream.stretches {
+                let within = ranks.simd_ge(i64x8::splat(simd, low)) & ranks.simd_le(i64x8::splat(simd, high));
+                members[group % GROUPS] |= within.to_bitmask() & live;
+            }
+            let numbers =
+                u32x8::splat(simd, first as u32) + u32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
+            for group in 0..GROUPS {
+                let members = members[group];
+                if members != 0 {
+                    let own = numbers.compress(mask32x8::from_bitmask(simd, members));
+                    own.store_slice(&mut lists[group][lengths[group]..][..LANES]);
+                    lengths[group] += members.count_ones() as usize;
+                }
+            }
         }
         pass.desk.lengths = lengths;
-        self.leave_stream(pass);
     }
 
     /// Rays that see nothing but the background.

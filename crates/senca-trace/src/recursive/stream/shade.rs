@@ -276,15 +276,22 @@ impl Tracer<'_> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let weight = self.gather_light(simd, pass, rays, live, places);
-                self.look_for_lamps(simd, stream, pass, rays, live, places, weight, reflectors);
+                let (weight, mut light) = self.own_light(simd, rays, places);
+                self.look_for_lamps(simd, stream, pass, rays, live, places, weight, reflectors, &mut light);
+                let alpha = if pass.nest == 0 { 1.0 } else { 0.0 };
+                let slots = rays.slot.to_array();
+                let light = channels!(k => light[k].to_array());
+                for lane in lanes_of(live.to_bitmask()) {
+                    let [r, g, b] = channels!(k => light[k][lane] as f32);
+                    pass.desk.add(slots[lane] as usize, LinearRgb::new(r, g, b), alpha);
+                }
                 self.reflect(simd, pass, rays, live, places, weight);
             },
         );
     }
 
-    /// I_l of equation 3.2 without the shadows: what the lamps would send, and the rays that find out whether
-    /// they do.
+    /// I_l of equation 3.2. What arrives for certain is added to `light` at once; the other rays towards lights
+    /// are put into lists.
     #[inline(always)]
     fn look_for_lamps<S: Simd>(
         &self,
@@ -296,6 +303,7 @@ impl Tracer<'_> {
         places: &Places<S>,
         weight: [F<S>; 3],
         reflectors: Option<&[Option<Reflector>; LANES]>,
+        light: &mut [F<S>; 3],
     ) {
         if pass.desk.shadows.iter().any(|list| list.len() >= MOST_SHADOWS) {
             self.cast_shadows(simd, stream, pass);
@@ -316,14 +324,48 @@ impl Tracer<'_> {
                 if !lit.any_true() {
                     continue;
                 }
-                let light = channels!(k => reflected[k] * weight[k]);
+                let arriving = channels!(k => reflected[k] * weight[k]);
                 let Coming { origin, way, t_max, .. } = coming;
                 let (direction, distance) = (way, F::splat(simd, 0.0));
                 let shadow =
-                    Packet { origin, direction, t_min: t_max, weight: light, distance, slot: rays.slot };
-                pass.desk.shadows[number % SHADOW_LISTS].push_more(lit, &shadow);
+                    Packet { origin, direction, t_min: t_max, weight: arriving, distance, slot: rays.slot };
+                let (now, later) = self.clear_at_once(simd, stream, pass, &shadow, lit);
+                for k in 0..3 {
+                    light[k] += now.select(arriving[k], F::splat(simd, 0.0));
+                }
+                if later.any_true() {
+                    pass.desk.shadows[number % SHADOW_LISTS].push_more(later, &shadow);
+                }
             }
         }
+    }
+
+    /// Which of the rays towards lights arrive, and of which that is not known yet.
+    #[inline(always)]
+    fn clear_at_once<S: Simd>(
+        &self,
+        simd: S,
+        stream: &Stream,
+        pass: &mut Pass<'_>,
+        shadow: &Packet<S>,
+        lit: M<S>,
+    ) -> (M<S>, M<S>) {
+        let none = M::splat(simd, false);
+        if !self.settings.shadows {
+            return (lit, none);
+        }
+        if !stream.shades_at_once() {
+            return (none, lit);
+        }
+        pass.counts.rays.shadow += u64::from(lit.to_bitmask().count_ones());
+        let (objects, counters) = (self.world.objects(), &mut pass.counts.work);
+        let Packet { origin, direction, t_min: t_max, .. } = *shadow;
+        let clear = lit & !stream.forms.occluded(simd, objects, origin, direction, t_max, lit, counters);
+        if stream.forms.patched.is_empty() {
+            return (clear, none);
+        }
+        let later = clear & stream.forms.meet_patched(simd, origin, direction, t_max);
+        (clear & !later, later)
     }
 
     /// Looks which of the rays towards lights arrive, and adds their light to the samples: S_i of
@@ -340,18 +382,14 @@ impl Tracer<'_> {
     fn cast_all<S: Simd>(&self, simd: S, stream: &Stream, pass: &mut Pass<'_>) {
         let mut lists = std::mem::take(&mut pass.desk.shadows);
         for list in &mut lists {
-            if self.settings.shadows {
+            if !stream.shades_at_once() {
                 pass.counts.rays.shadow += list.len() as u64;
             }
             for first in (0..list.len()).step_by(BLOCK) {
-                let clear = if self.settings.shadows {
-                    self.clear_of_block(simd, stream, pass, list, first)
-                } else {
-                    u64::MAX >> (BLOCK - (list.len() - first).min(BLOCK))
-                };
+                let clear = self.clear_of_block(simd, stream, pass, list, first);
                 for lane in bits_of(clear) {
                     let (slot, light, _) = list.leaving(first + lane);
-                    let light = if stream.asks && self.settings.shadows {
+                    let light = if stream.asks {
                         let ray = list.shadow_ray(first + lane);
                         light * self.visibility(&ray, &mut pass.counts.work)
                     } else {
@@ -376,6 +414,10 @@ impl Tracer<'_> {
         first: usize,
     ) -> u64 {
         let counters = &mut pass.counts.work;
+        if stream.shades_at_once() {
+            let all = u64::MAX >> (BLOCK - (list.len() - first).min(BLOCK));
+            return self.blocked_by_patches(simd, stream, list, first, all, (&mut pass.desk.block, counters));
+        }
         let mut clear = 0;
         for from in (0..BLOCK.min(list.len() - first)).step_by(LANES) {
             let (rays, live) = list.load(simd, first + from);
@@ -449,16 +491,9 @@ impl Tracer<'_> {
         }
     }
 
-    /// Adds the light that no lamp sends to the samples. Returns the share of the places in the picture.
+    /// The share of the places in the picture, and the light that no lamp sends.
     #[inline(always)]
-    fn gather_light<S: Simd>(
-        &self,
-        simd: S,
-        pass: &mut Pass<'_>,
-        rays: &Packet<S>,
-        live: M<S>,
-        places: &Places<S>,
-    ) -> [F<S>; 3] {
+    fn own_light<S: Simd>(&self, simd: S, rays: &Packet<S>, places: &Places<S>) -> ([F<S>; 3], [F<S>; 3]) {
         let Looks { emission, ambient, .. } = places.looks;
         let mut weight = rays.weight;
         let mut light = channels!(k => (emission[k] + ambient[k]) * weight[k]);
@@ -473,14 +508,7 @@ impl Tracer<'_> {
                 weight[k] *= clear;
             }
         }
-        let alpha = if pass.nest == 0 { 1.0 } else { 0.0 };
-        let slots = rays.slot.to_array();
-        let light = channels!(k => light[k].to_array());
-        for lane in lanes_of(live.to_bitmask()) {
-            let [r, g, b] = channels!(k => light[k][lane] as f32);
-            pass.desk.add(slots[lane] as usize, LinearRgb::new(r, g, b), alpha);
-        }
-        weight
+        (weight, light)
     }
 
     /// Puts the reflected rays into the list, unless they go too deep or cannot be seen.
