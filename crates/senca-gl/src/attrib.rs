@@ -18,6 +18,10 @@ pub(crate) struct Saved {
     buffers: Option<crate::framebuffer::SavedBuffers>,
 }
 
+/// State of a context, for another one.
+#[derive(Debug)]
+pub struct SavedState(Saved);
+
 /// What `push_client_attrib` has saved.
 #[derive(Debug)]
 pub(crate) struct SavedClient {
@@ -78,18 +82,35 @@ impl Context {
             if c.attrib_stack.len() >= MAX_ATTRIB_STACK_DEPTH {
                 return c.error(gl::STACK_OVERFLOW);
             }
-            c.settle_color_material();
-            let has = |bit| mask & bit != 0;
-            let buffers = has(gl::COLOR_BUFFER_BIT) || has(gl::PIXEL_MODE_BIT);
-            let saved = Saved {
-                mask,
-                state: Box::new(c.state.clone()),
-                transfer: has(gl::PIXEL_MODE_BIT).then(|| Box::new(c.pixels.transfer.clone())),
-                bindings: has(gl::TEXTURE_BIT).then(|| c.save_bindings()),
-                buffers: buffers.then(|| c.framebuffers.save_buffers()),
-            };
+            let saved = c.saved(mask);
             c.attrib_stack.push(saved);
         });
+    }
+
+    fn saved(&mut self, mask: Enum) -> Saved {
+        self.settle_color_material();
+        let has = |bit| mask & bit != 0;
+        let buffers = has(gl::COLOR_BUFFER_BIT) || has(gl::PIXEL_MODE_BIT);
+        Saved {
+            mask,
+            state: Box::new(self.state.clone()),
+            transfer: has(gl::PIXEL_MODE_BIT).then(|| Box::new(self.pixels.transfer.clone())),
+            bindings: has(gl::TEXTURE_BIT).then(|| self.save_bindings()),
+            buffers: buffers.then(|| self.framebuffers.save_buffers()),
+        }
+    }
+
+    /// The groups of state in `mask`, as `glPushAttrib` names them, for another context.
+    pub fn save_state(&mut self, mask: Enum) -> SavedState {
+        let mut saved = self.saved(mask);
+        saved.bindings = None;
+        SavedState(saved)
+    }
+
+    /// Takes over state of another context. Which textures are bound stays as it is, as objects are not state.
+    pub fn load_state(&mut self, state: SavedState) {
+        self.finish_window();
+        self.restore(state.0);
     }
 
     /// `glPopAttrib`: brings back what was saved last.
@@ -214,6 +235,19 @@ impl Context {
 mod tests {
     use super::*;
     use crate::Config;
+
+    #[test]
+    fn state_goes_from_one_context_to_another_by_groups() {
+        let [mut from, mut to] = [(); 2].map(|()| Context::new(crate::Config::default()));
+        from.line_width(3.0);
+        from.enable(gl::FOG);
+        from.point_size(5.0);
+        let state = from.save_state(gl::LINE_BIT | gl::FOG_BIT);
+        to.load_state(state);
+        assert_eq!(to.get_float(gl::LINE_WIDTH)[..], [3.0]);
+        assert_eq!(to.get_float(gl::POINT_SIZE)[..], [1.0]);
+        assert!(to.is_enabled(gl::FOG));
+    }
 
     #[test]
     fn groups_come_back_and_others_stay() {

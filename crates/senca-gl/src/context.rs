@@ -148,7 +148,7 @@ impl Context {
     /// `false` when there is no memory for it; the window stays as it was.
     pub fn resize(&mut self, width: u32, height: u32) -> bool {
         self.flush_batch();
-        let first = !self.framebuffers.has_window();
+        let first = !self.framebuffers.had_window;
         if !self.framebuffers.resize_window(width, height) {
             return false;
         }

@@ -60,6 +60,7 @@ mod window;
 pub type Enum = u32;
 
 pub use arrays::{ArraySource, ClientMemory};
+pub use attrib::SavedState;
 pub use component::Component;
 pub use context::{Config, Context, ShareGroup};
 pub use debug::{DebugCallback, DebugMessage};
@@ -67,7 +68,7 @@ pub use error::Error;
 pub use eval::{MAX_ORDER as MAX_EVAL_ORDER, map_components};
 pub use get::{EXTENSIONS, Values};
 pub use list::list_name_bytes;
-pub use window::{Colors, max_window_side};
+pub use window::{Colors, WindowBuffers, max_window_side};
 
 #[cfg(test)]
 mod image_fuzz;

@@ -2,14 +2,16 @@
 """Runs piglit's tests of OpenGL 1.x on libOSMesa.so.8 and compares with the expected results.
 
     apt install piglit xvfb libegl-dev
-    cargo build --release -p senca-osmesa
+    cargo build --release -p senca-osmesa -p senca-glx
     crates/senca-osmesa/piglit/run.py
+    crates/senca-osmesa/piglit/run.py --glx
 
 `expected.csv` beside this file has a line for each test: its name, the program with its arguments, what Mesa 22.3.6
 (llvmpipe) makes of it, what Senca makes of it, and why where that is not `pass`. The run fails when a result is
 worse than expected. `--update` writes what was found in place of what was expected.
 
-Each program runs on a small EGL over OSMesa (`egl.c`), built on the spot; nothing of the system's OpenGL is used.
+Each program runs on a small EGL over OSMesa (`egl.c`), built on the spot; nothing of the system's OpenGL is used. With
+`--glx` it runs in a window of X on libGL.so.1 instead, and the same is expected.
 """
 
 import argparse
@@ -35,7 +37,8 @@ ORDER = ["crash", "timeout", "fail", "warn", "skip", "pass"]
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--library", help="libOSMesa.so (default: the release build of this repository)")
+    parser.add_argument("--library", help="libOSMesa.so or libGL.so (default: the release build of this repository)")
+    parser.add_argument("--glx", action="store_true", help="run in windows of X, on libGL.so.1")
     parser.add_argument("--piglit", help="piglit's folder, with bin/ (default: where Debian has it)")
     parser.add_argument("--only", help="regular expression that names of tests must match")
     parser.add_argument("--timeout", type=float, default=60, help="seconds a test may take")
@@ -110,19 +113,26 @@ def run(row, options, environment):
 
 def main():
     options = arguments()
-    options.library = options.library or os.path.join(HERE, "../../../target/release/libOSMesa.so")
+    if options.glx and options.update:
+        sys.exit("what is expected is found without --glx")
+    name = "libGL.so" if options.glx else "libOSMesa.so"
+    options.library = options.library or os.path.join(HERE, "../../../target/release", name)
     found = glob.glob("/usr/lib/*/piglit/bin")
     options.piglit = options.piglit or (os.path.dirname(found[0]) if found else None)
     if not options.piglit or not os.path.exists(options.library):
-        sys.exit("piglit (apt install piglit) or the library (cargo build --release -p senca-osmesa) is not there")
+        sys.exit("piglit (apt install piglit) or the library (cargo build --release -p senca-osmesa -p senca-glx) is "
+                 "not there")
     if "DISPLAY" not in os.environ:
         os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset", *sys.argv])
     with open(EXPECTED, newline="") as file:
         rows = list(csv.DictReader(file))
     chosen = [r for r in rows if not options.only or re.search(options.only, r["test"])]
     with tempfile.TemporaryDirectory() as folder:
-        build_egl(folder, options.library)
-        environment = dict(os.environ, LD_LIBRARY_PATH=folder, PIGLIT_PLATFORM="x11_egl",
+        if options.glx:
+            shutil.copy(options.library, os.path.join(folder, "libGL.so.1"))
+        else:
+            build_egl(folder, options.library)
+        environment = dict(os.environ, LD_LIBRARY_PATH=folder, PIGLIT_PLATFORM="glx" if options.glx else "x11_egl",
                            PIGLIT_SOURCE_DIR=options.piglit)
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             results = list(pool.map(lambda row: run(row, options, environment), chosen))

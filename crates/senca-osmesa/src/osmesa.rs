@@ -1,9 +1,10 @@
 //! The `OSMesa*` functions.
 
-use crate::current::{self, with};
-use crate::memory::{In, Out};
-use crate::picture::{Kind, Layout, Order, Window};
-use senca_gl::{Config, gl};
+use crate::picture::{Kind, Layout, Order, Picture};
+use senca_gl::{Config, Context, gl};
+use senca_gl_abi::Entry;
+use senca_gl_abi::current::{self, Current, Window};
+use senca_gl_abi::memory::{In, Out};
 use std::ffi::c_void;
 
 const ROW_LENGTH: i32 = 0x10;
@@ -40,7 +41,21 @@ fn create(format: u32, [depth, stencil, accum]: [i32; 3], share: usize) -> usize
         stencil_bits: bits(stencil),
         accum_bits: bits(accum),
     };
-    current::create(config, Window::new(format, order, depth_bits), share)
+    current::create(config, Box::new(Picture::new(format, order, depth_bits)), share)
+}
+
+/// The picture of a context with its state machine.
+fn picture(c: &mut Current) -> Option<(&mut Picture, &mut Context)> {
+    c.window_and_gl()
+}
+
+/// Does something with the picture of the current context, if there is one.
+fn with(work: impl FnOnce(&mut Picture, &mut Context)) {
+    current::with(|c| {
+        if let Some((window, gl)) = picture(c) {
+            work(window, gl);
+        }
+    });
 }
 
 /// What a list of attributes asks for; `None` for what is not had.
@@ -72,17 +87,17 @@ fn attach(handle: usize, buffer: Out<u8>, kind: u32, width: i32, height: i32) ->
     let size = |n: i32| u32::try_from(n).ok().filter(|n| (1..=limit).contains(n));
     let (Some(width), Some(height)) = (size(width), size(height)) else { return false };
     current::make_current(handle, |c| {
-        let order = c.window.layout.order;
+        let Some((window, gl)) = picture(c) else { return false };
+        let order = window.layout.order;
         let Some(number) = Kind::of(kind, order) else { return false };
         let float = matches!(number, Kind::Short | Kind::Float);
-        let changed = (c.window.width, c.window.height) != (width, height) || c.gl.has_float_color() != float;
+        let changed = (window.width, window.height) != (width, height) || gl.has_float_color() != float;
         if changed {
-            c.gl.set_float_color(float);
-            if !c.gl.resize(width, height) {
+            gl.set_float_color(float);
+            if !gl.resize(width, height) {
                 return false;
             }
         }
-        let window = &mut c.window;
         (window.layout, window.kind) = (Layout { order, kind: number }, kind);
         (window.buffer, window.width, window.height) = (buffer.address(), width, height);
         true
@@ -97,8 +112,7 @@ fn question(name: i32) -> Option<i32> {
         WIDTH | HEIGHT | FORMAT | TYPE | ROW_LENGTH | Y_UP => Some(0),
         _ => return None,
     };
-    with(|c| {
-        let window = &c.window;
+    with(|window, _| {
         answer = Some(match name {
             WIDTH => window.width as i32,
             HEIGHT => window.height as i32,
@@ -111,6 +125,11 @@ fn question(name: i32) -> Option<i32> {
     answer
 }
 
+/// The function of a name.
+fn find(name: &str) -> Option<&'static Entry> {
+    senca_gl_abi::find(name).or_else(|| FUNCTIONS.iter().find(|e| e.name == name))
+}
+
 /// Defines C functions of OSMesa.
 macro_rules! functions {
     ($( $name:ident ($($arg:ident: $t:ty),* $(,)?) $(-> $r:ty)? $body:block )*) => {
@@ -120,13 +139,10 @@ macro_rules! functions {
                 let body = move || $body;
                 std::panic::catch_unwind(std::panic::AssertUnwindSafe(body)).unwrap_or_default()
             }
-
-            #[cfg(test)]
-            mod $name {
-                pub(super) const SIGNATURE: &str = concat!($(stringify!($t), ";",)* "->", $(stringify!($r))?);
-            }
         )*
-        entries!(FUNCTIONS: $($name)*);
+
+        /// The functions of this file by name.
+        static FUNCTIONS: &[Entry] = &[$(Entry::new(stringify!($name), $name as *const c_void),)*];
     };
 }
 
@@ -148,9 +164,9 @@ functions! {
     }
     OSMesaGetCurrentContext() -> usize { current::current_handle() }
     OSMesaPixelStore(name: i32, value: i32) {
-        with(|c| match (name, u32::try_from(value)) {
-            (ROW_LENGTH, Ok(value)) => c.window.row_length = value.min(1 << 24),
-            (Y_UP, _) => c.window.y_up = value != 0,
+        with(|window, _| match (name, u32::try_from(value)) {
+            (ROW_LENGTH, Ok(value)) => window.row_length = value.min(1 << 24),
+            (Y_UP, _) => window.y_up = value != 0,
             _ => {}
         });
     }
@@ -168,9 +184,12 @@ functions! {
     ) -> u8 {
         let mut found = None;
         current::inspect(context, |c| {
-            if c.window.buffer != 0 && c.window.depth_bits > 0 {
-                let (bytes, address) = c.window.read_depths(&mut c.gl);
-                found = Some(([c.window.width, c.window.height, bytes as u32].map(|v| v as i32), address));
+            if let Some((window, gl)) = picture(c)
+                && window.buffer != 0
+                && window.depth_bits > 0
+            {
+                let (bytes, address) = window.read_depths(gl);
+                found = Some(([window.width, window.height, bytes as u32].map(|v| v as i32), address));
             }
         });
         let ([w, h, bytes], address) = found.unwrap_or_default();
@@ -189,10 +208,12 @@ functions! {
     ) -> u8 {
         let mut found = None;
         current::inspect(context, |c| {
-            if c.window.buffer != 0 {
-                c.present();
-                let values = [c.window.width, c.window.height, c.window.format].map(|v| v as i32);
-                found = Some((values, c.window.buffer));
+            if let Some((window, gl)) = picture(c)
+                && window.buffer != 0
+            {
+                window.present(gl);
+                let values = [window.width, window.height, window.format].map(|v| v as i32);
+                found = Some((values, window.buffer));
             }
         });
         let ([w, h, f], address) = found.unwrap_or_default();
@@ -204,11 +225,23 @@ functions! {
     }
     OSMesaGetProcAddress(name: In<u8>) -> usize {
         let text = name.short_text::<MAX_NAME>();
-        let entry = text.and_then(|name| crate::commands::find(&name));
-        entry.map_or(0, |e| e.address.expose_provenance())
+        text.and_then(|name| find(&name)).map_or(0, |e| e.address.expose_provenance())
     }
-    OSMesaColorClamp(enable: u8) { with(|c| c.window.clamp = enable != 0); }
+    OSMesaColorClamp(enable: u8) { with(|window, _| window.clamp = enable != 0); }
     OSMesaPostprocess(_context: usize, _filter: *const c_void, _value: u32) {
         // There are no such filters; programs that ask for one get the picture as it is.
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_are_found_by_name() {
+        assert!(
+            ["OSMesaMakeCurrent", "OSMesaGetProcAddress", "glClear"].iter().all(|name| find(name).is_some())
+        );
+        assert!(["OSMesa", "glNoSuchCommand", ""].iter().all(|name| find(name).is_none()));
     }
 }

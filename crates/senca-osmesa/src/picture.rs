@@ -1,8 +1,9 @@
 //! The program's picture: a piece of its memory that what is drawn is copied to.
 
-use crate::memory::Out;
 use rayon::prelude::*;
 use senca_gl::{Context, gl};
+use senca_gl_abi::current::Window;
+use senca_gl_abi::memory::Out;
 
 /// Names of OSMesa that are not OpenGL's.
 pub(crate) mod osmesa {
@@ -150,7 +151,7 @@ fn packed565([r, g, b, _]: [f32; 4]) -> [u8; 2] {
 
 /// Where the program wants its picture, and how.
 #[derive(Debug)]
-pub(crate) struct Window {
+pub(crate) struct Picture {
     /// Format and type as the program said them.
     pub(crate) format: u32,
     pub(crate) kind: u32,
@@ -171,7 +172,7 @@ pub(crate) struct Window {
     pub(crate) depths: Vec<u32>,
 }
 
-impl Window {
+impl Picture {
     /// None yet.
     pub(crate) fn new(format: u32, order: Order, depth_bits: u32) -> Self {
         let kind = if order == Order::Rgb565 { Kind::Packed565 } else { Kind::Byte };
@@ -197,8 +198,27 @@ impl Window {
         (stride as usize * pixel, stride.min(self.width) as usize * pixel)
     }
 
+    /// The depth buffer in words as programs expect it of OSMesa: 16 bits in 2 bytes when that was asked for,
+    /// else 24 bits in the lower part of 4. Returns bytes of a word and the address.
+    pub(crate) fn read_depths(&mut self, context: &mut Context) -> (usize, usize) {
+        let depths = context.window_depths();
+        let quantized = |z: f32, top: f64| (f64::from(z.clamp(0.0, 1.0)) * top).round_ties_even() as u32;
+        let bytes = if self.depth_bits <= 16 {
+            let halves: Vec<u16> = depths.iter().map(|z| quantized(*z, 65535.0) as u16).collect();
+            self.depths = vec![0; halves.len().div_ceil(2)];
+            bytemuck::cast_slice_mut(&mut self.depths)[..halves.len()].copy_from_slice(&halves);
+            2
+        } else {
+            self.depths = depths.iter().map(|z| quantized(*z, 16_777_215.0)).collect();
+            4
+        };
+        (bytes, self.depths.as_mut_ptr().expose_provenance())
+    }
+}
+
+impl Window for Picture {
     /// Draws what is waiting and copies the picture to the program's memory.
-    pub(crate) fn present(&mut self, context: &mut Context) {
+    fn present(&mut self, context: &mut Context) {
         context.finish_window();
         if self.buffer == 0 {
             return;
@@ -224,23 +244,6 @@ impl Window {
         } else {
             bytes.par_chunks_mut(stride).with_min_len(height.div_ceil(8)).enumerate().for_each(write);
         }
-    }
-
-    /// The depth buffer in words as programs expect it of OSMesa: 16 bits in 2 bytes when that was asked for,
-    /// else 24 bits in the lower part of 4. Returns bytes of a word and the address.
-    pub(crate) fn read_depths(&mut self, context: &mut Context) -> (usize, usize) {
-        let depths = context.window_depths();
-        let quantized = |z: f32, top: f64| (f64::from(z.clamp(0.0, 1.0)) * top).round_ties_even() as u32;
-        let bytes = if self.depth_bits <= 16 {
-            let halves: Vec<u16> = depths.iter().map(|z| quantized(*z, 65535.0) as u16).collect();
-            self.depths = vec![0; halves.len().div_ceil(2)];
-            bytemuck::cast_slice_mut(&mut self.depths)[..halves.len()].copy_from_slice(&halves);
-            2
-        } else {
-            self.depths = depths.iter().map(|z| quantized(*z, 16_777_215.0)).collect();
-            4
-        };
-        (bytes, self.depths.as_mut_ptr().expose_provenance())
     }
 }
 

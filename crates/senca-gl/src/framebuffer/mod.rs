@@ -28,6 +28,7 @@ mod tests;
 pub(crate) use blit::Aspect;
 pub(crate) use object::{Framebuffers, MAX_COLOR_ATTACHMENTS, Renderbuffers, SavedBuffers};
 pub(crate) use plane::{Area, Plane, SAMPLES};
+pub(crate) use window::Window;
 
 /// Largest side of a renderbuffer.
 pub(crate) const MAX_RENDERBUFFER_SIZE: u32 = 8192;

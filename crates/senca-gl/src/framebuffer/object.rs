@@ -111,6 +111,8 @@ pub(crate) struct SavedBuffers {
 pub(crate) struct Framebuffers {
     pub(crate) config: Config,
     pub(crate) window: Window,
+    /// Whether there has been a window.
+    pub(crate) had_window: bool,
     pub(crate) objects: Names<FramebufferObject>,
     /// Name of the framebuffer that is drawn to; 0 is the window.
     pub(crate) draw: u32,
@@ -128,6 +130,7 @@ impl Framebuffers {
         Self {
             config,
             window: Window::NONE,
+            had_window: false,
             objects: Names::default(),
             draw: 0,
             read: 0,
@@ -148,6 +151,7 @@ impl Framebuffers {
         }
         let Some(window) = Window::new(self.config, width, height) else { return false };
         self.window = window;
+        self.had_window = true;
         true
     }
 

@@ -107,7 +107,7 @@ fn no_name_is_twice_in_the_tables() {
     names.sort_unstable();
     names.dedup();
     assert_eq!(names.len(), all);
-    assert!(names.iter().all(|n| n.starts_with("gl") || n.starts_with("OSMesa")));
+    assert!(names.iter().all(|n| n.starts_with("gl")));
 }
 
 #[test]

@@ -16,7 +16,7 @@ const LOWEST_ADDRESS: usize = 1 << 16;
 ///
 /// # Safety
 /// Every pattern of bits of that size is a value, and there is no padding.
-pub(crate) unsafe trait Plain: Copy + 'static {}
+pub unsafe trait Plain: Copy + 'static {}
 
 macro_rules! plain {
     ($($t:ty)*) => {$(
@@ -30,11 +30,11 @@ plain!(i8 u8 i16 u16 i32 u32 i64 u64 f32 f64 isize usize);
 unsafe impl Plain for Pointer {}
 
 /// Some numbers, mostly few.
-pub(crate) type Few<T> = SmallVec<[T; 16]>;
+pub type Few<T> = SmallVec<[T; 16]>;
 
 /// What a command reads; may be NULL.
 #[repr(transparent)]
-pub(crate) struct In<T>(*const T);
+pub struct In<T>(*const T);
 
 impl<T> Clone for In<T> {
     fn clone(&self) -> Self {
@@ -45,22 +45,27 @@ impl<T> Clone for In<T> {
 impl<T> Copy for In<T> {}
 
 impl<T> In<T> {
-    pub(crate) fn is_null(self) -> bool {
+    /// Whether it is NULL, or an address that no memory of a program has.
+    #[must_use]
+    pub fn is_null(self) -> bool {
         self.0.addr() < LOWEST_ADDRESS
     }
 
     /// Where it is.
-    pub(crate) fn address(self) -> usize {
+    #[must_use]
+    pub fn address(self) -> usize {
         self.0.expose_provenance()
     }
 
     /// What is at an address that was a pointer of the program's before.
-    pub(crate) fn at(address: usize) -> Self {
+    #[must_use]
+    pub fn at(address: usize) -> Self {
         Self(std::ptr::with_exposed_provenance(address))
     }
 
     /// `len` bytes; nothing when there are none or the pointer is NULL.
-    pub(crate) fn bytes(&self, len: usize) -> Option<&[u8]> {
+    #[must_use]
+    pub fn bytes(&self, len: usize) -> Option<&[u8]> {
         let possible = !self.is_null() && isize::try_from(len).is_ok();
         // SAFETY: the program answers for `len` bytes behind a pointer that is not NULL (see the module), and
         // does not change them during the call.
@@ -71,20 +76,23 @@ impl<T> In<T> {
 impl<T: Plain> In<T> {
     /// The first `N` numbers.
     #[inline]
-    pub(crate) fn array<const N: usize>(self) -> Option<[T; N]> {
+    #[must_use]
+    pub fn array<const N: usize>(self) -> Option<[T; N]> {
         // SAFETY: the program answers for `N` numbers behind a pointer that is not NULL (see the module); they
         // need not be aligned, and any bits are a number.
         (!self.is_null()).then(|| unsafe { self.0.cast::<[T; N]>().read_unaligned() })
     }
 
     /// The number `k` places further.
-    pub(crate) fn get(self, k: usize) -> Option<T> {
+    #[must_use]
+    pub fn get(self, k: usize) -> Option<T> {
         // SAFETY: as in `array`.
         (!self.is_null()).then(|| unsafe { self.0.add(k).read_unaligned() })
     }
 
     /// The first `n` numbers; `None` for NULL or a negative `n`.
-    pub(crate) fn values(self, n: i32) -> Option<Few<T>> {
+    #[must_use]
+    pub fn values(self, n: i32) -> Option<Few<T>> {
         let n = usize::try_from(n).ok()?;
         if self.is_null() {
             return None;
@@ -99,7 +107,8 @@ impl<T: Plain> In<T> {
 
 impl In<u8> {
     /// A text with a closing zero and fewer than `N` bytes; nothing is read behind the zero or `N` bytes.
-    pub(crate) fn short_text<const N: usize>(self) -> Option<String> {
+    #[must_use]
+    pub fn short_text<const N: usize>(self) -> Option<String> {
         let mut bytes = Vec::new();
         while bytes.len() < N {
             match self.get(bytes.len())? {
@@ -111,7 +120,8 @@ impl In<u8> {
     }
 
     /// A text: `len` bytes, or up to the closing zero when `len` is negative. What is not UTF-8 is replaced.
-    pub(crate) fn text(self, len: i32) -> Option<String> {
+    #[must_use]
+    pub fn text(self, len: i32) -> Option<String> {
         let bytes = match usize::try_from(len) {
             Ok(len) => self.bytes(len)?,
             Err(_) if self.is_null() => return None,
@@ -124,7 +134,7 @@ impl In<u8> {
 
 /// What a command writes; may be NULL, then nothing is written.
 #[repr(transparent)]
-pub(crate) struct Out<T>(*mut T);
+pub struct Out<T>(*mut T);
 
 impl<T> Clone for Out<T> {
     fn clone(&self) -> Self {
@@ -135,27 +145,33 @@ impl<T> Clone for Out<T> {
 impl<T> Copy for Out<T> {}
 
 impl<T> Out<T> {
-    pub(crate) fn is_null(self) -> bool {
+    /// Whether it is NULL, or an address that no memory of a program has.
+    #[must_use]
+    pub fn is_null(self) -> bool {
         self.0.addr() < LOWEST_ADDRESS
     }
 
     /// Where it is.
-    pub(crate) fn address(self) -> usize {
+    #[must_use]
+    pub fn address(self) -> usize {
         self.0.expose_provenance()
     }
 
     /// What is at an address that was a pointer of the program's before.
-    pub(crate) fn at(address: usize) -> Self {
+    #[must_use]
+    pub fn at(address: usize) -> Self {
         Self(std::ptr::with_exposed_provenance_mut(address))
     }
 
     /// What is `n` elements further; NULL stays NULL.
-    pub(crate) fn skip(self, n: usize) -> Self {
+    #[must_use]
+    pub fn skip(self, n: usize) -> Self {
         if self.is_null() { self } else { Self(self.0.wrapping_add(n)) }
     }
 
     /// `len` bytes to be written; `None` for NULL or more bytes than there can be.
-    pub(crate) fn bytes(&mut self, len: usize) -> Option<&mut [u8]> {
+    #[must_use]
+    pub fn bytes(&mut self, len: usize) -> Option<&mut [u8]> {
         let possible = !self.is_null() && isize::try_from(len).is_ok();
         // SAFETY: the program answers for `len` bytes behind a pointer that is not NULL (see the module), and
         // does not touch them during the call.
@@ -166,7 +182,7 @@ impl<T> Out<T> {
 impl<T: Copy> Out<T> {
     /// Writes numbers one after another.
     #[inline]
-    pub(crate) fn write(self, values: &[T]) {
+    pub fn write(self, values: &[T]) {
         if !self.is_null() {
             for (k, value) in values.iter().enumerate() {
                 // SAFETY: the program answers for as many numbers as the command writes behind a pointer that
@@ -178,14 +194,14 @@ impl<T: Copy> Out<T> {
 
     /// Writes one number.
     #[inline]
-    pub(crate) fn put(self, value: T) {
+    pub fn put(self, value: T) {
         self.write(&[value]);
     }
 }
 
 impl Out<u8> {
     /// Writes as much of a text as `size` bytes hold with a closing zero; returns how long it then is.
-    pub(crate) fn write_text(self, text: &str, size: i32) -> usize {
+    pub fn write_text(self, text: &str, size: i32) -> usize {
         let Some(room) = usize::try_from(size).ok().and_then(|n| n.checked_sub(1)) else { return 0 };
         let bytes = &text.as_bytes()[..text.len().min(room)];
         self.write(bytes);
@@ -195,11 +211,11 @@ impl Out<u8> {
 }
 
 /// An offset in a buffer when one is bound, else an address.
-pub(crate) type Pointer = In<c_void>;
+pub type Pointer = In<c_void>;
 
 /// The memory that arrays given by address are in: all there is.
 #[derive(Debug)]
-pub(crate) struct ProgramMemory;
+pub struct ProgramMemory;
 
 impl ClientMemory for ProgramMemory {
     fn with(&self, address: usize, len: usize, read: &mut dyn FnMut(&[u8])) {

@@ -3,19 +3,36 @@
 use std::ffi::c_void;
 
 /// A function of the library that programs can ask for by name.
-pub(crate) struct Entry {
-    pub(crate) name: &'static str,
-    pub(crate) address: *const c_void,
+#[derive(Debug)]
+pub struct Entry {
+    /// As C calls it.
+    pub name: &'static str,
+    /// Where it is.
+    pub address: *const c_void,
     /// Types of parameters and result, as in the table.
     #[cfg(test)]
     pub(crate) signature: &'static str,
+}
+
+impl Entry {
+    /// A function of another library that depends on this crate.
+    #[must_use]
+    pub const fn new(name: &'static str, address: *const c_void) -> Self {
+        Self {
+            name,
+            address,
+            #[cfg(test)]
+            signature: "",
+        }
+    }
 }
 
 // SAFETY: the address is that of a function, which all threads may call; nothing is written through it.
 unsafe impl Sync for Entry {}
 
 /// An answer of a command, and what it is when there is no context to ask.
-pub(crate) trait Answer {
+pub trait Answer {
+    /// Without a context.
     const NONE: Self;
 }
 

@@ -21,7 +21,10 @@ commands! { COMMANDS, c:
     glPushClientAttrib(mask: u32) { c.push_client_attrib(mask) }
     glPopClientAttrib() { c.pop_client_attrib() }
 
-    glViewport(x: i32, y: i32, width: i32, height: i32) { c.viewport(x, y, width, height) }
+    glViewport(x: i32, y: i32, width: i32, height: i32) {
+        c.look_at_window();
+        c.viewport(x, y, width, height);
+    }
     glScissor(x: i32, y: i32, width: i32, height: i32) { c.scissor(x, y, width, height) }
     glDepthRange(near: f64, far: f64) { c.depth_range(near, far) }
     glClipPlane(plane: u32, equation: In<f64>) {

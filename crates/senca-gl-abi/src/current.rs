@@ -4,9 +4,9 @@
 //! numbers of contexts only, so a context that is gone is found to be gone.
 
 use crate::memory::ProgramMemory;
-use crate::picture::Window;
 use crate::table::Answer;
 use senca_gl::{Config, Context, ShareGroup, gl};
+use std::any::Any;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::ops::{Deref, DerefMut};
@@ -14,16 +14,28 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A context and what C's interface knows of it.
-pub(crate) struct Current {
-    pub(crate) handle: usize,
-    pub(crate) gl: Context,
-    pub(crate) window: Window,
+pub struct Current {
+    /// Its number, which C takes for a pointer.
+    pub handle: usize,
+    /// The state machine.
+    pub gl: Context,
+    /// Where its picture goes.
+    pub window: Box<dyn Window>,
     /// Where the program wants hit records, and how many words fit.
     pub(crate) select_buffer: usize,
     /// Where it wants what is fed back.
     pub(crate) feedback_buffer: usize,
     /// Function and parameter that messages go to.
     pub(crate) debug_callback: [usize; 2],
+}
+
+/// Where a context's picture goes.
+pub trait Window: Any + Send {
+    /// Brings the picture up to date, for `glFlush` and `glFinish`, and when the context is released.
+    fn present(&mut self, gl: &mut Context);
+
+    /// Finds out whether the window has got another size, before `glViewport`.
+    fn look(&mut self, _gl: &mut Context) {}
 }
 
 impl Deref for Current {
@@ -42,8 +54,19 @@ impl DerefMut for Current {
 
 impl Current {
     /// Brings the program's picture up to date.
-    pub(crate) fn present(&mut self) {
+    pub fn present(&mut self) {
         self.window.present(&mut self.gl);
+    }
+
+    /// Finds out whether the window has got another size.
+    pub(crate) fn look_at_window(&mut self) {
+        self.window.look(&mut self.gl);
+    }
+
+    /// The window as what it is, with the state machine; `None` if it is of another kind.
+    pub fn window_and_gl<W: Window>(&mut self) -> Option<(&mut W, &mut Context)> {
+        let window: &mut dyn Any = &mut *self.window;
+        Some((window.downcast_mut()?, &mut self.gl))
     }
 }
 
@@ -88,7 +111,7 @@ thread_local! {
 
 /// Does a command with the current context. It is away meanwhile: a callback of the program's finds none.
 #[inline]
-pub(crate) fn with<R: Answer>(command: impl FnOnce(&mut Current) -> R) -> R {
+pub fn with<R: Answer>(command: impl FnOnce(&mut Current) -> R) -> R {
     let run = |here: &Here| {
         let Some(mut current) = here.0.take() else { return R::NONE };
         let result = catch_unwind(AssertUnwindSafe(|| command(&mut current)));
@@ -102,7 +125,8 @@ pub(crate) fn with<R: Answer>(command: impl FnOnce(&mut Current) -> R) -> R {
 }
 
 /// Makes a context that shares with another; 0 when there is no such other.
-pub(crate) fn create(config: Config, window: Window, share: usize) -> usize {
+#[must_use]
+pub fn create(config: Config, window: Box<dyn Window>, share: usize) -> usize {
     let mut register = register();
     let group = match (share, register.contexts.get(&share)) {
         (0, _) => ShareGroup::default(),
@@ -121,16 +145,21 @@ pub(crate) fn create(config: Config, window: Window, share: usize) -> usize {
 }
 
 /// Forgets a context. One that is current with this thread is released; with another, when that releases it.
-pub(crate) fn destroy(handle: usize) {
+pub fn destroy(handle: usize) {
     if current_handle() == handle {
         release();
     }
+    forget(handle);
+}
+
+/// Forgets a context as soon as no thread has it.
+pub fn forget(handle: usize) {
     let known = register().contexts.remove(&handle);
     drop(known);
 }
 
 /// Looks at a context that is current with this thread or with none.
-pub(crate) fn inspect(handle: usize, look: impl FnOnce(&mut Current)) {
+pub fn inspect(handle: usize, look: impl FnOnce(&mut Current)) {
     if handle != 0 && current_handle() == handle {
         return with(look);
     }
@@ -143,7 +172,8 @@ pub(crate) fn inspect(handle: usize, look: impl FnOnce(&mut Current)) {
 }
 
 /// Number of the thread's context; 0 for none.
-pub(crate) fn current_handle() -> usize {
+#[must_use]
+pub fn current_handle() -> usize {
     let run = |here: &Here| {
         let current = here.0.take();
         let handle = current.as_ref().map_or(0, |c| c.handle);
@@ -154,7 +184,7 @@ pub(crate) fn current_handle() -> usize {
 }
 
 /// Takes the thread's context from it, its picture complete.
-pub(crate) fn release() {
+pub fn release() {
     with(Current::present);
     if let Ok(Some(current)) = HERE.try_with(|here| here.0.take()) {
         put_back(current);
@@ -185,7 +215,8 @@ fn put_back(current: Box<Current>) {
 
 /// Gives the thread a context, with its window made ready by `prepare`; `false` when there is no such context,
 /// another thread has it, or `prepare` says so. Then everything is as before.
-pub(crate) fn make_current(handle: usize, prepare: impl FnOnce(&mut Current) -> bool) -> bool {
+#[must_use]
+pub fn make_current(handle: usize, prepare: impl FnOnce(&mut Current) -> bool) -> bool {
     if handle != 0 && current_handle() == handle {
         let mut done = false;
         with(|c| {

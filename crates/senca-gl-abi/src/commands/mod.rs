@@ -24,7 +24,6 @@ use std::sync::OnceLock;
 /// All tables.
 pub(crate) fn tables() -> impl Iterator<Item = &'static Entry> {
     [
-        crate::osmesa::FUNCTIONS,
         arrays::COMMANDS,
         debug::COMMANDS,
         evaluators::COMMANDS,
@@ -44,8 +43,9 @@ pub(crate) fn tables() -> impl Iterator<Item = &'static Entry> {
     .flatten()
 }
 
-/// The function of a name.
-pub(crate) fn find(name: &str) -> Option<&'static Entry> {
+/// The `gl*` function of a name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Entry> {
     static NAMES: OnceLock<HashMap<&str, &Entry>> = OnceLock::new();
     NAMES.get_or_init(|| tables().map(|e| (e.name, e)).collect()).get(name).copied()
 }
