@@ -40,7 +40,12 @@ fn the_documents_commands_draw_pictures() {
     assert!(commands.len() >= 3, "{commands:?}");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     for command in commands {
-        let arguments = arguments(command);
+        let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let in_repository = |argument: String| match argument.strip_prefix("crates/") {
+            Some(_) => repository.join(&argument).display().to_string(),
+            None => argument,
+        };
+        let arguments: Vec<String> = arguments(command).into_iter().map(in_repository).collect();
         let run = Command::new(example()).args(&arguments).current_dir(folder).output().unwrap();
         assert!(run.status.success(), "{command}: {}", String::from_utf8_lossy(&run.stderr));
         let picture = std::fs::read(folder.join(arguments.last().unwrap())).unwrap();
@@ -53,7 +58,40 @@ fn wrong_arguments_are_told() {
     for wrong in
         [&["surface"][..], &["nothing", "--out", "x.png"], &["first", "--size", "0x3", "--out", "x.png"]]
     {
-        let run = Command::new(example()).args(wrong).output().unwrap();
+        let mut command = Command::new(example());
+        // A window is no answer here: there is no display.
+        command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        let run = command.args(wrong).output().unwrap();
         assert!(!run.status.success() && !run.stderr.is_empty(), "{wrong:?}");
     }
+}
+
+/// Pixels of a PNG of three bytes each, and its width.
+fn picture(path: &Path) -> (usize, Vec<u8>) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    (reader.info().width as usize, pixels)
+}
+
+#[test]
+fn sessions_are_replayed() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (script, first, last) =
+        (folder.join("session.script"), folder.join("first.png"), folder.join("last.png"));
+    let text = format!(
+        "drag 10 100 90 100\nclick 10 20\nclick 90 20\nsave {}\nclick right 50 100\nsize 120 110\n",
+        first.display()
+    );
+    std::fs::write(&script, text).unwrap();
+    let mut run = Command::new(example());
+    run.args(["editor", "--size", "100x110", "--script"]).arg(&script).arg("--out").arg(&last);
+    let run = run.output().unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let lit = |(width, pixels): &(usize, Vec<u8>), x: usize, y: usize| pixels[3 * (y * width + x)] > 0;
+    let [first, last] = [first, last].map(|path| picture(&path));
+    assert_eq!((first.0, last.0), (100, 120));
+    assert!(lit(&first, 50, 100) && lit(&first, 50, 20), "both lines");
+    assert!(!lit(&last, 50, 100) && lit(&last, 50, 20), "the lower one is deleted");
 }

@@ -42,20 +42,47 @@ pub(crate) fn primitives(c: &mut Context, aspect: f64) {
     }
 }
 
-fn central(c: &mut Context, aspect: f64, eye: [f64; 3], target: [f64; 3]) {
+/// How the user has turned the eye of a central projection about what it looks at.
+#[derive(Clone, Copy)]
+pub(crate) struct Turn {
+    /// About the z axis, in radians.
+    pub(crate) around: f64,
+    /// Up from where it begins, in radians.
+    pub(crate) up: f64,
+    /// Factor of the distance.
+    pub(crate) distance: f64,
+}
+
+impl Turn {
+    /// As it begins.
+    pub(crate) const NONE: Self = Self { around: 0.0, up: 0.0, distance: 1.0 };
+
+    /// The eye after turning; at most 89 degrees up or down.
+    fn eye(self, eye: [f64; 3], target: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]];
+        let flat = x.hypot(y);
+        let (around, up) = (y.atan2(x) + self.around, z.atan2(flat) + self.up);
+        let distance = flat.hypot(z) * self.distance;
+        let steep = 89.0f64.to_radians();
+        let ((sin, cos), (high, out)) = (around.sin_cos(), up.clamp(-steep, steep).sin_cos());
+        [target[0] + distance * out * cos, target[1] + distance * out * sin, target[2] + distance * high]
+    }
+}
+
+fn central(c: &mut Context, aspect: f64, eye: [f64; 3], target: [f64; 3], turn: Turn) {
     c.matrix_mode(gl::PROJECTION);
     c.load_identity();
     c.perspective(40.0, aspect, 0.5, 60.0);
     c.matrix_mode(gl::MODELVIEW);
     c.load_identity();
-    c.look_at(eye, target, [0.0, 0.0, 1.0]);
+    c.look_at(turn.eye(eye, target), target, [0.0, 0.0, 1.0]);
 }
 
 /// Exercise 5.4: z = cos(2 pi a x) cos(2 pi b y), with a = b = 1 over [-1, 1].
-pub(crate) fn waves(c: &mut Context, aspect: f64) {
+pub(crate) fn waves(c: &mut Context, aspect: f64, turn: Turn) {
     const N: u32 = 60;
     c.enable(gl::DEPTH_TEST);
-    central(c, aspect, [2.6, -3.4, 2.6], [0.0, 0.0, -0.1]);
+    central(c, aspect, [2.6, -3.4, 2.6], [0.0, 0.0, -0.1], turn);
     let at = |k: u32| 2.0 * f64::from(k) / f64::from(N) - 1.0;
     for i in 0..N {
         c.begin(gl::QUAD_STRIP);
@@ -105,23 +132,35 @@ pub(crate) fn ellipses(c: &mut Context, aspect: f64) {
     c.translate([-2.6, -1.9, 0.0]);
     c.scale([0.9, 1.3, 1.0]);
     letters::write(c, font, "ELLIPSES");
+    c.delete_lists(disc, 1);
+    c.delete_lists(font, letters::LISTS);
+}
+
+/// How a texture is applied.
+#[derive(Clone, Copy)]
+pub(crate) struct Texture {
+    /// The filter for minification.
+    pub(crate) minifier: u32,
+    /// `MODULATE`, `DECAL`, `BLEND` or `REPLACE`.
+    pub(crate) mode: u32,
 }
 
 /// A chessboard of 64 x 64 texels, with all smaller levels.
-fn chessboard(c: &mut Context, minifier: u32) {
+fn chessboard(c: &mut Context, texture: Texture) {
     let texel =
         |r: usize, k: usize| if (r & 8 == 0) == (k & 8 == 0) { [240, 235, 220] } else { [70, 80, 110] };
     let board: Vec<u8> = (0..64).flat_map(|r| (0..64).flat_map(move |k| texel(r, k))).collect();
     c.pixel_store(gl::UNPACK_ALIGNMENT, 1);
     c.tex_image_2d(gl::TEXTURE_2D, 0, 3, [64, 64], 0, gl::RGB, gl::UNSIGNED_BYTE, Some(&board));
     c.generate_mipmap(gl::TEXTURE_2D);
-    c.tex_parameter(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, &[f64::from(minifier)]);
+    c.tex_parameter(gl::TEXTURE_2D, gl::TEXTURE_MIN_FILTER, &[f64::from(texture.minifier)]);
+    c.tex_env(gl::TEXTURE_ENV, gl::TEXTURE_ENV_MODE, &[texture.mode as f32]);
     c.hint(gl::PERSPECTIVE_CORRECTION_HINT, gl::NICEST);
     c.enable(gl::TEXTURE_2D);
 }
 
 /// Exercises 5.6 to 5.8: bodies on a pad, from far (0) to near (1), perhaps with a texture.
-pub(crate) fn bodies(c: &mut Context, aspect: f64, nearness: f64, minifier: Option<u32>) {
+pub(crate) fn bodies(c: &mut Context, aspect: f64, nearness: f64, texture: Option<Texture>, turn: Turn) {
     c.enable(gl::DEPTH_TEST);
     c.enable(gl::LIGHTING);
     c.enable(gl::LIGHT0);
@@ -130,12 +169,12 @@ pub(crate) fn bodies(c: &mut Context, aspect: f64, nearness: f64, minifier: Opti
     c.light_model(gl::LIGHT_MODEL_LOCAL_VIEWER, &[1.0]);
     c.light_model(gl::LIGHT_MODEL_COLOR_CONTROL, &[gl::SEPARATE_SPECULAR_COLOR as f32]);
     let distance = 8.5 + 30.0 * (1.0 - nearness.clamp(0.0, 1.0));
-    central(c, aspect, [0.55 * distance, -0.72 * distance, 0.42 * distance], [0.0, 0.0, 0.6]);
+    central(c, aspect, [0.55 * distance, -0.72 * distance, 0.42 * distance], [0.0, 0.0, 0.6], turn);
     c.light(gl::LIGHT0, gl::POSITION, &[3.0, -4.0, 7.0, 1.0]);
     c.material(gl::FRONT_AND_BACK, gl::SPECULAR, &[0.6, 0.6, 0.6, 1.0]);
     c.material(gl::FRONT_AND_BACK, gl::SHININESS, &[40.0]);
-    if let Some(minifier) = minifier {
-        chessboard(c, minifier);
+    if let Some(texture) = texture {
+        chessboard(c, texture);
     }
     let mut body = |place: [f64; 3], color: [f32; 3], solid: &dyn Fn(&mut Context)| {
         c.push_matrix();
@@ -152,7 +191,7 @@ pub(crate) fn bodies(c: &mut Context, aspect: f64, nearness: f64, minifier: Opti
 }
 
 /// Exercise 5.9: a bowl of four patches that join smoothly.
-pub(crate) fn patches(c: &mut Context, aspect: f64) {
+pub(crate) fn patches(c: &mut Context, aspect: f64, turn: Turn) {
     c.enable(gl::DEPTH_TEST);
     c.enable(gl::LIGHTING);
     c.enable(gl::LIGHT0);
@@ -162,7 +201,7 @@ pub(crate) fn patches(c: &mut Context, aspect: f64) {
     c.light_model(gl::LIGHT_MODEL_TWO_SIDE, &[1.0]);
     // The quadrilaterals of a mesh run clockwise as seen from where the normals point.
     c.front_face(gl::CW);
-    central(c, aspect, [3.4, -4.6, 3.6], [0.0, 0.0, 0.55]);
+    central(c, aspect, [3.4, -4.6, 3.6], [0.0, 0.0, 0.55], turn);
     c.light(gl::LIGHT0, gl::POSITION, &[2.0, -4.0, 6.0, 1.0]);
     c.material(gl::FRONT_AND_BACK, gl::SPECULAR, &[0.7, 0.7, 0.7, 1.0]);
     c.material(gl::FRONT_AND_BACK, gl::SHININESS, &[60.0]);
@@ -188,48 +227,4 @@ pub(crate) fn patches(c: &mut Context, aspect: f64) {
         c.eval_mesh2(gl::FILL, [0, 16], [0, 16]);
         c.pop_matrix();
     }
-}
-
-/// Exercise 5.10: segments drawn by two ends, deleted by a click on them, which selection finds.
-pub(crate) fn editor(c: &mut Context, [width, height]: [u32; 2], clicks: &[Vec<f64>]) {
-    let [w, h] = [width, height].map(f64::from);
-    let mut segments: Vec<[f64; 4]> = Vec::new();
-    let draw = |c: &mut Context, segments: &[[f64; 4]]| {
-        for (k, [x0, y0, x1, y1]) in segments.iter().enumerate() {
-            c.load_name(k as u32);
-            c.begin(gl::LINES);
-            c.vertex([*x0, *y0]);
-            c.vertex([*x1, *y1]);
-            c.end();
-        }
-    };
-    for click in clicks {
-        match click[..] {
-            [x0, y0, x1, y1] => segments.push([x0, y0, x1, y1]),
-            [x, y] => {
-                c.select_buffer(512);
-                c.render_mode(gl::SELECT);
-                c.init_names();
-                c.push_name(0);
-                c.matrix_mode(gl::PROJECTION);
-                c.load_identity();
-                c.pick_matrix([x, y], [5.0, 5.0], [0, 0, width as i32, height as i32]);
-                c.ortho_2d(0.0, w, 0.0, h);
-                c.matrix_mode(gl::MODELVIEW);
-                draw(c, &segments);
-                // A record is 1, least depth, greatest depth, name; the last one drawn lies on top.
-                if c.render_mode(gl::RENDER) > 0
-                    && let Some(record) = c.selected().as_chunks::<4>().0.last()
-                {
-                    segments.remove(record[3] as usize);
-                }
-            }
-            _ => {}
-        }
-    }
-    c.matrix_mode(gl::PROJECTION);
-    c.load_identity();
-    c.ortho_2d(0.0, w, 0.0, h);
-    c.color([1.0, 0.9, 0.4]);
-    draw(c, &segments);
 }

@@ -32,9 +32,12 @@ const STROKES: [&str; 26] = [
     "06460040",
 ];
 
+/// How many lists a font has: one for each character code.
+pub(crate) const LISTS: i32 = 128;
+
 /// Makes the lists; returns the list base that goes with character codes.
 pub(crate) fn font(c: &mut Context) -> u32 {
-    let base = c.gen_lists(128);
+    let base = c.gen_lists(LISTS);
     for (k, strokes) in STROKES.iter().enumerate() {
         c.new_list(base + u32::from(b'A') + k as u32, gl::COMPILE);
         for stroke in strokes.split(' ') {

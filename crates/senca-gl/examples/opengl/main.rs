@@ -1,29 +1,44 @@
-//! The sample programs and exercises of the course text, chapter 5, drawn without a window.
+//! The sample programs and exercises of the course text, chapter 5, in a window or without one.
 //!
+//! `cargo run --release -p senca-gl --example opengl -- surface`
 //! `cargo run --release -p senca-gl --example opengl -- surface --out surface.png`
+#![allow(clippy::print_stderr, reason = "a program tells what is wrong")]
 
+mod editor;
 mod exercises;
 mod letters;
 mod samples;
+mod show;
 mod solids;
 
 use clap::{Parser, ValueEnum};
-use senca_gl::{Config, Context, gl};
+use senca_gl::gl;
+use senca_window::{Canvas, Program, Script, Session, desktop};
+use show::Show;
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
-/// Draws a program of chapter 5 into a PNG.
+/// Shows a program of chapter 5 in a window, replays a session with it, or draws it into a PNG.
 #[derive(Parser)]
+#[command(after_help = KEYS)]
 struct Arguments {
-    /// What to draw.
+    /// Which program.
     program: Name,
-    /// The picture.
+    /// Writes the last picture: of the script, of the window, or the one the program begins with.
     #[arg(long)]
-    out: PathBuf,
+    out: Option<PathBuf>,
+    /// Opens a window, after the script if there is one. Default without --script and --out.
+    #[arg(long)]
+    window: bool,
+    /// Replays a session without a display: a text with one command a line, such as `key left`, `drag 10 10 90 50`,
+    /// `tick 0.1 20`, `size 640 480`, `save picture.png`.
+    #[arg(long)]
+    script: Option<PathBuf>,
     /// Width and height in pixels, such as 400x300. Default: those of the text.
     #[arg(long, value_parser = size)]
     size: Option<[u32; 2]>,
-    /// Moment of an animation, 0 to 1.
+    /// Moment of the animation that a picture without a script shows, 0 to 1.
     #[arg(long, default_value_t = 0.5)]
     time: f64,
     /// Clicks of the line editor in pixels from the lower left corner: x,y,x,y draws a segment, x,y deletes one.
@@ -31,7 +46,13 @@ struct Arguments {
     click: Vec<String>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+const KEYS: &str = "\
+Arrow keys or dragging turn the eye, + - or the wheel move it, Home puts it back. f: filled, lines, points.
+approach: space stops and starts. textures, mipmaps: m next filter, e next way to apply the texture.
+editor: the left button draws a segment from press to release, or from click to click; the right one deletes.
+Ctrl+S saves PROGRAM.png, q or Escape ends.";
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Name {
     /// Sample: two segments (section 5.4).
     First,
@@ -61,44 +82,79 @@ enum Name {
     Editor,
 }
 
+impl Name {
+    /// What the window is called.
+    fn title(self) -> &'static str {
+        match self {
+            Self::First => "First program",
+            Self::Texture => "Texture mapping",
+            Self::Curve => "Bézier curve",
+            Self::Surface => "Bézier surface",
+            Self::Primitives => "Primitives",
+            Self::Waves => "Waves",
+            Self::Ellipses => "Ellipses",
+            Self::Bodies => "Bodies",
+            Self::Approach => "Approach",
+            Self::Textures => "Textures",
+            Self::Mipmaps => "Mipmaps",
+            Self::Patches => "Patches",
+            Self::Editor => "Line editor",
+        }
+    }
+}
+
 fn size(text: &str) -> Result<[u32; 2], String> {
     let (w, h) = text.split_once('x').ok_or("two numbers with an x between them, such as 400x300")?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=8192).contains(n)).ok_or("sides of 1 to 8192 pixels");
     Ok([side(w)?, side(h)?])
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("opengl: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
-    let own = if matches!(arguments.program, Name::First) { 300 } else { 400 };
-    let [width, height] = arguments.size.unwrap_or([own; 2]);
-    let mut c = Context::new(Config::default());
-    if !c.resize(width, height) {
-        return Err(format!("no memory for a window of {width} x {height} pixels").into());
+    let mut show =
+        Show::new(arguments.program, arguments.size).ok_or("no memory for a window of that size")?;
+    for place in clicks(&arguments.click)? {
+        match place[..] {
+            [x0, y0, x1, y1] => show.editor.add([[x0, y0], [x1, y1]]),
+            [x, y] => show.delete([x, y]),
+            _ => {}
+        }
     }
-    c.viewport(0, 0, width as i32, height as i32);
-    c.clear_color([0.0, 0.0, 0.0, 1.0]);
-    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
-    let aspect = f64::from(width) / f64::from(height);
-    match arguments.program {
-        Name::First => samples::first(&mut c, aspect),
-        Name::Texture => samples::texture(&mut c, aspect),
-        Name::Curve => samples::curve(&mut c, aspect),
-        Name::Surface => samples::surface(&mut c, aspect),
-        Name::Primitives => exercises::primitives(&mut c, aspect),
-        Name::Waves => exercises::waves(&mut c, aspect),
-        Name::Ellipses => exercises::ellipses(&mut c, aspect),
-        Name::Bodies => exercises::bodies(&mut c, aspect, 1.0, None),
-        Name::Approach => exercises::bodies(&mut c, aspect, arguments.time, None),
-        Name::Textures => exercises::bodies(&mut c, aspect, 1.0, Some(gl::LINEAR)),
-        Name::Mipmaps => exercises::bodies(&mut c, aspect, 1.0, Some(gl::LINEAR_MIPMAP_LINEAR)),
-        Name::Patches => exercises::patches(&mut c, aspect),
-        Name::Editor => exercises::editor(&mut c, [width, height], &clicks(&arguments.click)?),
+    let in_window = arguments.window || (arguments.script.is_none() && arguments.out.is_none());
+    if !in_window && arguments.script.is_none() {
+        (show.time, show.running) = (arguments.time, false);
     }
-    c.finish();
-    match c.get_error() {
-        gl::NO_ERROR => write(&c, [width, height], &arguments.out),
-        error => Err(format!("OpenGL error {error:#06x}").into()),
+    match show.display() {
+        gl::NO_ERROR => {}
+        error => return Err(format!("OpenGL error {error:#06x}").into()),
     }
+    let name = show.title().to_lowercase().replace(' ', "-") + ".png";
+    let mut session = Session::new(&mut show);
+    if let Some(path) = &arguments.script {
+        let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let script = Script::parse(&path.display().to_string(), &text)?;
+        script.replay(&mut session, |file, canvas| write(canvas, Path::new(file)))?;
+    }
+    let picture = if in_window {
+        desktop::go_on(session, |canvas| {
+            if let Err(error) = write(canvas, Path::new(&name)) {
+                eprintln!("{name}: {error}");
+            }
+        })?
+    } else {
+        session.finish()
+    };
+    arguments.out.map_or(Ok(()), |path| write(&picture, &path))
 }
 
 fn clicks(texts: &[String]) -> Result<Vec<Vec<f64>>, String> {
@@ -109,11 +165,13 @@ fn clicks(texts: &[String]) -> Result<Vec<Vec<f64>>, String> {
     texts.iter().map(numbers).collect()
 }
 
-/// Writes the window, whose lowest row comes first, as a PNG.
-fn write(c: &Context, [width, height]: [u32; 2], path: &Path) -> Result<(), Box<dyn Error>> {
-    let rows = c.window_pixels().chunks(width as usize).rev();
-    let bytes: Vec<u8> = rows.flatten().flat_map(|p| [p[0], p[1], p[2]]).collect();
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(std::fs::File::create(path)?), width, height);
+/// Writes a picture as a PNG.
+fn write(canvas: &Canvas, path: &Path) -> Result<(), Box<dyn Error>> {
+    let rgb = |pixel: &u32| pixel.to_be_bytes().into_iter().skip(1);
+    let bytes: Vec<u8> = canvas.pixels().iter().flat_map(rgb).collect();
+    let file = std::fs::File::create(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let size = [canvas.width() as u32, canvas.height() as u32];
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), size[0], size[1]);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header()?;
