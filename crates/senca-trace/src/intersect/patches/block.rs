@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f32x16, prelude::*};
 use senca_math::glam::{DVec2, DVec3};
 
-use super::hierarchy::{Candidate, SingleRay};
+use super::hierarchy::SingleRay;
 use super::search::{Hit, LocalRay, SLACK};
 use super::together::Met;
 use crate::lanes::{F, LANES, M, V, bits_of, eight, lanes_of};
@@ -30,10 +30,7 @@ pub(crate) struct RayBlock {
     found: [[f64; BLOCK]; 3],
     parts: [u32; BLOCK],
     hits: u64,
-    /// Room for the cells that the rays may meet.
-    pub(super) candidates: Vec<Candidate>,
-    /// Their order.
-    pub(super) order: Vec<u64>,
+    /// Room for rays that wait for Newton's method.
     pub(super) met: Option<Box<Met>>,
 }
 
@@ -54,8 +51,6 @@ impl Default for RayBlock {
             found: [[0.0; BLOCK]; 3],
             parts: [0; BLOCK],
             hits: 0,
-            candidates: Vec::new(),
-            order: Vec::new(),
             met: None,
         }
     }

@@ -199,6 +199,36 @@ impl<S: Simd> Pair<S> {
         along_first > along_second || (along_first == along_second && !self.is_turned)
     }
 
+    /// Whether the control points are certainly farther than `width` from every line through the origin, by
+    /// the area that they and one of them span with it.
+    #[inline(always)]
+    fn is_wider_than(&self, width: f64) -> bool {
+        let simd = self.lines[0].token();
+        let [corner, ..] = points(self.lines[0]);
+        let across = corner.perp();
+        let across = F::load_array(
+            simd,
+            [across.x, across.y, across.x, across.y, across.x, across.y, across.x, across.y],
+        );
+        let areas = four(
+            #[inline(always)]
+            |i| {
+                let products = self.lines[i] * across;
+                (products + products.slide_within_blocks::<1>(products)).abs()
+            },
+        );
+        let lengths = four(
+            #[inline(always)]
+            |i| self.lines[i].abs(),
+        );
+        let most = |[a, b, c, d]: [F<S>; 4]| {
+            let [a, b, c, d] = points(larger(larger(a, b), larger(c, d)));
+            a.max(b).max(c.max(d)).max_element()
+        };
+        // Along a line of that width two vectors of length l span less than 2 l width. Some room for rounding.
+        most(areas) > 2.5 * width * (std::f64::consts::SQRT_2 * most(lengths))
+    }
+
     /// Farthest distance of the control points from the origin, and from a line through it.
     #[inline(always)]
     fn extent(&self) -> (f64, f64) {
@@ -320,6 +350,9 @@ fn judge<S: Simd>(pair: &Pair<S>, domain: &Domain, is_regular: IsRegular<'_>) ->
 #[inline(always)]
 fn undecided<S: Simd>(pair: &Pair<S>, domain: &Domain, is_regular: IsRegular<'_>) -> Verdict {
     let divide = || Verdict::Divide { first: pair.is_longer_along_first() };
+    if pair.is_wider_than(TOUCHING) {
+        return divide();
+    }
     let (length, width) = pair.extent();
     let uv = domain.center();
     if width > TOUCHING {

@@ -155,18 +155,6 @@ impl Hierarchy {
     }
 }
 
-/// A cell whose box some rays of a bundle meet.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
-    /// Not after the place where one of them meets the box first.
-    pub near: f32,
-    pub cell: u32,
-    /// A bit for each of these rays.
-    pub rays: u64,
-    /// Per axis the low and the high side of the box.
-    pub sides: [[f32; 2]; 3],
-}
-
 /// Bounds on a bundle of rays: every box that one of them meets is met by the beam, by the same products
 /// and differences, which round the same way.
 #[derive(Clone, Copy, Debug)]
@@ -182,8 +170,11 @@ pub(super) struct Beam {
     pub far: f32,
 }
 
-/// The rays that go through the boxes together.
+/// Rays that go through the boxes together, and what to do with the cells whose boxes they meet.
 pub(super) trait Bundle<S: Simd> {
+    /// Whether the nearest box is to come first.
+    const SORTED: bool;
+
     /// Bounds on all of them.
     fn beam(&self, simd: S) -> Beam;
 
@@ -192,75 +183,98 @@ pub(super) trait Bundle<S: Simd> {
 
     /// One of them: origin, inverse direction, first and last distance.
     fn one(&self, ray: usize) -> ([f32; 3], [f32; 3], [f32; 2]);
+
+    /// Those that are still of interest.
+    fn open(&self) -> u64;
+
+    /// How far along these boxes are of interest.
+    fn limit(&self) -> f32;
+
+    /// Looks at a cell that some of the rays may meet.
+    fn cell(&mut self, simd: S, cell: u32, rays: u64, sides: &[[f32; 2]; 3]);
 }
 
 /// Up to so many rays ask eight boxes each, more ask box after box.
 const FEW: u32 = 6;
 
+/// What some rays still have to look at.
+#[derive(Clone, Copy)]
+struct Errand {
+    link: Link,
+    /// Not after the place where one of them meets the box first.
+    near: f32,
+    rays: u64,
+    /// Where the box is: node and slot.
+    node: u32,
+    slot: u32,
+}
+
 impl Hierarchy {
-    /// Puts the cells below `root` whose boxes some of `rays` meet into `out`. Counts nodes looked at.
+    /// Looks at the cells below `root` whose boxes some of the rays meet. Returns how many nodes were looked at.
     ///
     /// Of a node that many rays are at, bounds on all rays leave out most boxes, and sixteen rays at a time
     /// are asked about the others. So rays that go all ways are soon on their own, where each asks for
     /// itself.
     #[inline(always)]
-    pub(super) fn collect<S: Simd>(
-        &self,
-        simd: S,
-        root: Link,
-        rays: u64,
-        bundle: &impl Bundle<S>,
-        (out, nodes): (&mut Vec<Candidate>, &mut u64),
-    ) {
-        out.clear();
-        let mut stack: SmallVec<[(Link, u64); 64]> = SmallVec::new();
+    pub(super) fn walk<S: Simd, B: Bundle<S>>(&self, simd: S, root: Link, bundle: &mut B) -> u64 {
+        let mut stack: SmallVec<[Errand; 64]> = SmallVec::new();
         if let Some(cell) = root.as_cell().filter(|_| root != Link::NONE) {
             let sides = [[f32::NEG_INFINITY, f32::INFINITY]; 3];
-            out.push(Candidate { near: f32::NEG_INFINITY, cell, rays, sides });
+            bundle.cell(simd, cell, bundle.open(), &sides);
         } else if root != Link::NONE {
-            stack.push((root, rays));
+            let near = f32::NEG_INFINITY;
+            stack.push(Errand { link: root, near, rays: bundle.open(), node: 0, slot: 0 });
         }
         let slabs = BeamSlabs::new(simd, &bundle.beam(simd));
-        while let Some((link, rays)) = stack.pop() {
-            *nodes += 1;
-            let node = &self.nodes[link.0 as usize];
-            let mut below = Below { node, stack: &mut stack, out: &mut *out };
+        let mut visited = 0;
+        while let Some(errand) = stack.pop() {
+            let rays = errand.rays & bundle.open();
+            if rays == 0 || errand.near > bundle.limit() {
+                continue;
+            }
+            if let Some(cell) = errand.link.as_cell() {
+                let sides = self.nodes[errand.node as usize].sides_of(errand.slot as usize % WIDTH);
+                bundle.cell(simd, cell, rays, &sides);
+                continue;
+            }
+            visited += 1;
+            let bottom = stack.len();
+            let number = errand.link.0;
+            let node = &self.nodes[number as usize];
+            let mut go_on = |slot: usize, rays: u64, near: f32| {
+                let errand =
+                    Errand { link: node.children[slot], near, rays, node: number, slot: slot as u32 };
+                if rays != 0 {
+                    push_errand(&mut stack, if B::SORTED { bottom } else { usize::MAX }, errand);
+                }
+            };
             if rays.count_ones() <= FEW {
                 let (of_boxes, nears) = few_at(simd, node, rays, bundle);
                 for slot in 0..WIDTH {
-                    below.go_on(slot, of_boxes[slot], nears[slot]);
+                    go_on(slot, of_boxes[slot], nears[slot]);
                 }
                 continue;
             }
-            let (met, nears) = slabs.meet(node);
+            let (met, nears) = slabs.meet(node, bundle.limit());
             for slot in bits_of(met) {
                 let slot = slot % WIDTH;
-                let rays = bundle.meet_box(simd, rays, &node.sides_of(slot));
-                below.go_on(slot, rays, nears[slot]);
+                go_on(slot, bundle.meet_box(simd, rays, &node.sides_of(slot)), nears[slot]);
             }
         }
+        visited
     }
 }
 
-/// Where rays go from a node.
-struct Below<'a> {
-    node: &'a WideNode,
-    stack: &'a mut SmallVec<[(Link, u64); 64]>,
-    out: &'a mut Vec<Candidate>,
-}
-
-impl Below<'_> {
-    #[inline(always)]
-    fn go_on(&mut self, slot: usize, rays: u64, near: f32) {
-        if rays == 0 {
-            return;
-        }
-        let child = self.node.children[slot];
-        match child.as_cell() {
-            None => self.stack.push((child, rays)),
-            Some(cell) => self.out.push(Candidate { near, cell, rays, sides: self.node.sides_of(slot) }),
-        }
+/// Keeps the entries from `bottom` on in descending order of distance.
+#[inline(always)]
+fn push_errand(stack: &mut SmallVec<[Errand; 64]>, bottom: usize, errand: Errand) {
+    let mut i = stack.len();
+    stack.push(errand);
+    while i > bottom && stack[i - 1].near < errand.near {
+        stack[i] = stack[i - 1];
+        i -= 1;
     }
+    stack[i] = errand;
 }
 
 /// Which rays meet the boxes of a node, and where the first of them does.
@@ -343,9 +357,9 @@ impl<S: Simd> BeamSlabs<S> {
 
     /// Which boxes may be met by one of the rays, one bit each, and where at the earliest.
     #[inline(always)]
-    fn meet(&self, node: &WideNode) -> (u64, [f32; WIDTH]) {
+    fn meet(&self, node: &WideNode, limit: f32) -> (u64, [f32; WIDTH]) {
         let simd = self.near.token();
-        let (mut near, mut far) = (self.near, self.far);
+        let (mut near, mut far) = (self.near, self.far.min(f32x8::splat(simd, limit)));
         let mut crossed = 0xff;
         for (axis, sides) in self.axes.iter().zip(&node.sides) {
             let [low, high] = [f32x8::simd_from(simd, sides[0]), f32x8::simd_from(simd, sides[1])];

@@ -2,7 +2,7 @@
 //!
 //! The fast twin of the search of one ray. Bounds on all rays of a block, a *beam*, go through the
 //! hierarchy in their place; what the beam meets is asked for by sixteen rays at a time, and only those go
-//! on that meet it themselves. Then cell after cell, the nearest first, they are asked whether they meet its
+//! on that meet it themselves, the nearest box first. In a cell they are asked whether they meet its
 //! plane, and Newton's method runs for eight of those that do, side by side, whichever cells of a patch they
 //! are in.
 //!
@@ -16,7 +16,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block::{BLOCK, DIRECTION, FAR, INVERSE, NEAR, RayBlock, WIDE};
 use super::cells::{Cell, MARGIN, PLACE_SLACK};
-use super::hierarchy::{Beam, Bundle, Candidate};
+use super::hierarchy::{Beam, Bundle};
 use super::search::{Hit, Nearest, Newton, SETTLED, Search, WIDEST, settle};
 use super::{PatchSurface, SINGULAR};
 use crate::lanes::{F, LANES, M, V, bits_of, channels, eight, first_lanes, lanes_of, larger};
@@ -76,84 +76,17 @@ impl PatchSurface {
         if block.live() == 0 {
             return;
         }
-        let mut candidates = std::mem::take(&mut block.candidates);
-        let out = (&mut candidates, &mut counters.nodes);
-        self.hierarchy.collect(simd, self.root, block.live(), &*block, out);
-        let mut order = std::mem::take(&mut block.order);
-        order.clear();
-        order.extend(candidates.iter().enumerate().map(|(i, c)| u64::from(ordered(c.near)) << 32 | i as u64));
-        if !ANY {
-            order.sort_unstable();
-        }
         let mut met = block.met.take().unwrap_or_default();
         met.clear();
-        let candidates_in_order = order.iter().map(|&key| &candidates[key as u32 as usize]);
-        self.cells_met::<S, ANY>(simd, block, candidates_in_order, &mut met, counters);
-        (block.candidates, block.order, block.met) = (candidates, order, Some(met));
-    }
-
-    /// What rays meet in the cells whose boxes they meet.
-    #[inline(always)]
-    fn cells_met<'a, S: Simd, const ANY: bool>(
-        &self,
-        simd: S,
-        block: &mut RayBlock,
-        candidates: impl Iterator<Item = &'a Candidate>,
-        met: &mut Met,
-        counters: &mut Counters,
-    ) {
-        let live = block.live();
-        let mut open = live;
-        let mut farthest = f32::INFINITY;
-        let mut patch = u32::MAX;
-        for candidate in candidates {
-            if candidate.near > farthest {
-                break;
-            }
-            let cell = &self.cells[candidate.cell as usize];
-            if cell.patch != patch {
-                self.newton_all(simd, block, met, ANY);
-                patch = cell.patch;
-            }
-            let mut unknown = 0;
-            for first in (0..BLOCK).step_by(WIDE) {
-                let sixteen = (candidate.rays & open) >> first & 0xffff;
-                if sixteen != 0 {
-                    let near = box_met(simd, block, first, &candidate.sides) & sixteen;
-                    if near != 0 {
-                        counters.tests += u64::from(near.count_ones());
-                        unknown |= meet_plane(simd, block, first, near, (cell, candidate.cell), met) << first;
-                    }
-                }
-            }
-            for lane in bits_of(unknown) {
-                self.divide(block, lane, cell, ANY);
-            }
-            let is_full = met.len >= LANES;
-            while met.len >= LANES {
-                self.newton_eight(simd, block, met, met.len - LANES, ANY);
-            }
-            if !is_full && unknown == 0 {
-                continue;
-            }
-            if ANY {
-                open = live & !block.hits();
-                if open == 0 {
-                    return;
-                }
-            } else {
-                farthest = greatest(simd, &block.single[FAR], live);
-            }
-        }
-        self.newton_all(simd, block, met, ANY);
-    }
-
-    /// Newton's method for all that wait for it.
-    #[inline(always)]
-    fn newton_all<S: Simd>(&self, simd: S, block: &mut RayBlock, met: &mut Met, any: bool) {
-        while met.len > 0 {
-            self.newton_eight(simd, block, met, met.len.saturating_sub(LANES), any);
-        }
+        let open = block.live();
+        let (far, patch) = (f32::INFINITY, u32::MAX);
+        let mut search: BlockSearch<'_, ANY> =
+            BlockSearch { surface: self, block, met: &mut met, open, far, patch, tests: 0 };
+        counters.nodes += self.hierarchy.walk(simd, self.root, &mut search);
+        search.newton_all(simd);
+        search.divide_rest();
+        counters.tests += search.tests;
+        block.met = Some(met);
     }
 
     /// A ray in a cell of a patch that is not evaluated eight places at once.
@@ -292,6 +225,113 @@ impl PatchSurface {
     }
 }
 
+/// The search of the rays of a block: for the nearest hits, or for any.
+struct BlockSearch<'a, const ANY: bool> {
+    surface: &'a PatchSurface,
+    block: &'a mut RayBlock,
+    met: &'a mut Met,
+    /// Rays that still look for something.
+    open: u64,
+    /// How far the one looks that looks farthest.
+    far: f32,
+    /// Patch of the rays that wait for Newton's method.
+    patch: u32,
+    tests: u64,
+}
+
+impl<const ANY: bool> BlockSearch<'_, ANY> {
+    /// Newton's method for all that wait for it.
+    #[inline(always)]
+    fn newton_all<S: Simd>(&mut self, simd: S) {
+        while self.met.len > 0 {
+            let first = self.met.len.saturating_sub(LANES);
+            self.surface.newton_eight(simd, self.block, self.met, first, ANY);
+        }
+    }
+
+    /// Looks at what was put off. For any hit, pieces are not divided before all else is tried.
+    fn divide_rest(&mut self) {
+        for i in 0..self.met.put_off.len() {
+            let (lane, cell) = self.met.put_off[i];
+            if self.block.hits() >> lane & 1 == 0 {
+                self.surface.divide(self.block, usize::from(lane), &self.surface.cells[cell as usize], ANY);
+            }
+        }
+    }
+}
+
+impl<S: Simd, const ANY: bool> Bundle<S> for BlockSearch<'_, ANY> {
+    const SORTED: bool = !ANY;
+
+    #[inline(always)]
+    fn beam(&self, simd: S) -> Beam {
+        beam_of(simd, self.block, self.open)
+    }
+
+    #[inline(always)]
+    fn meet_box(&self, simd: S, among: u64, sides: &[[f32; 2]; 3]) -> u64 {
+        let mut met = 0;
+        for first in (0..BLOCK).step_by(WIDE) {
+            if among >> first & 0xffff != 0 {
+                met |= box_met(simd, self.block, first, sides) << first;
+            }
+        }
+        met & among
+    }
+
+    #[inline(always)]
+    fn one(&self, ray: usize) -> ([f32; 3], [f32; 3], [f32; 2]) {
+        let at = |k: usize| self.block.single[k][ray % BLOCK];
+        (channels!(k => at(k)), channels!(k => at(INVERSE + k)), [at(NEAR), at(FAR)])
+    }
+
+    #[inline(always)]
+    fn open(&self) -> u64 {
+        self.open
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.far
+    }
+
+    #[inline(always)]
+    fn cell(&mut self, simd: S, number: u32, rays: u64, sides: &[[f32; 2]; 3]) {
+        let cell = &self.surface.cells[number as usize];
+        if cell.patch != self.patch {
+            self.newton_all(simd);
+            self.patch = cell.patch;
+        }
+        // Some may have met something before it by now.
+        let rays = if ANY { rays } else { self.meet_box(simd, rays, sides) };
+        self.tests += u64::from(rays.count_ones());
+        let mut unknown = 0;
+        for first in (0..BLOCK).step_by(WIDE) {
+            let sixteen = rays >> first & 0xffff;
+            if sixteen != 0 {
+                unknown |= meet_plane(simd, self.block, first, sixteen, (cell, number), self.met) << first;
+            }
+        }
+        for lane in bits_of(unknown) {
+            if ANY {
+                self.met.put_off.push((lane as u8, number));
+            } else {
+                self.surface.divide(self.block, lane, cell, ANY);
+            }
+        }
+        let is_full = self.met.len >= LANES;
+        while self.met.len >= LANES {
+            let first = self.met.len - LANES;
+            self.surface.newton_eight(simd, self.block, self.met, first, ANY);
+        }
+        if ANY {
+            self.open &= !self.block.hits();
+        } else if is_full || unknown != 0 {
+            self.far = greatest(simd, &self.block.single[FAR], self.open);
+        }
+    }
+}
+
 /// Rays of which is known that they meet a cell at most once; all cells are of one patch.
 #[derive(Clone, Debug)]
 pub(super) struct Met {
@@ -300,6 +340,8 @@ pub(super) struct Met {
     cells: [u32; ROOM],
     near: [[f32; ROOM]; 2],
     len: usize,
+    /// Rays and cells of which nothing is known, which are looked at in the end.
+    put_off: Vec<(u8, u32)>,
 }
 
 /// Fewer than eight that wait, those of one more cell, and eight that are read beyond the last.
@@ -307,7 +349,7 @@ const ROOM: usize = BLOCK + 2 * LANES;
 
 impl Default for Met {
     fn default() -> Self {
-        Self { numbers: [0; ROOM], cells: [0; ROOM], near: [[0.0; ROOM]; 2], len: 0 }
+        Self { numbers: [0; ROOM], cells: [0; ROOM], near: [[0.0; ROOM]; 2], len: 0, put_off: Vec::new() }
     }
 }
 
@@ -315,6 +357,7 @@ impl Met {
     #[inline(always)]
     fn clear(&mut self) {
         self.len = 0;
+        self.put_off.clear();
     }
 
     /// `count` numbers from `first` on; behind the last there is the first again.
@@ -473,37 +516,6 @@ fn among<S: Simd>(simd: S, rays: u64, first: usize) -> fearless_simd::mask32x16<
 fn ends_of_three<S: Simd>(simd: S, block: &RayBlock, k: usize, rays: u64) -> [[f32; 3]; 2] {
     let axes = channels!(axis => ends(simd, &block.single[k + axis], rays));
     [channels!(axis => axes[axis][0]), channels!(axis => axes[axis][1])]
-}
-
-impl<S: Simd> Bundle<S> for RayBlock {
-    #[inline(always)]
-    fn beam(&self, simd: S) -> Beam {
-        beam_of(simd, self, self.live())
-    }
-
-    #[inline(always)]
-    fn meet_box(&self, simd: S, among: u64, sides: &[[f32; 2]; 3]) -> u64 {
-        let mut met = 0;
-        for first in (0..BLOCK).step_by(WIDE) {
-            if among >> first & 0xffff != 0 {
-                met |= box_met(simd, self, first, sides) << first;
-            }
-        }
-        met & among
-    }
-
-    #[inline(always)]
-    fn one(&self, ray: usize) -> ([f32; 3], [f32; 3], [f32; 2]) {
-        let at = |k: usize| self.single[k][ray % BLOCK];
-        (channels!(k => at(k)), channels!(k => at(INVERSE + k)), [at(NEAR), at(FAR)])
-    }
-}
-
-/// A float as an integer of the same order.
-#[inline(always)]
-fn ordered(x: f32) -> u32 {
-    let bits = x.to_bits();
-    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 /// Bounds on some rays of a block.
