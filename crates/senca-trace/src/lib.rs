@@ -5,6 +5,7 @@ pub mod antialias;
 mod counters;
 mod error;
 mod film;
+mod fresnel;
 mod intersect;
 mod lanes;
 mod material;

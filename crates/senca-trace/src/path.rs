@@ -42,7 +42,6 @@
 mod area;
 mod bsdf;
 mod distribution;
-mod fresnel;
 mod glow;
 mod lights;
 mod settings;

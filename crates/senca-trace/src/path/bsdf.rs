@@ -21,8 +21,8 @@ use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-use super::fresnel::{dielectric, mirrored, refracted};
 use super::warp;
+use crate::fresnel::{dielectric, mirrored, refracted};
 use crate::{MaterialPoint, ReflectionPoint};
 
 /// Smallest width of facets; as in the other renderers.

@@ -1,19 +1,14 @@
 //! Shares of reflected and transmitted rays.
+
+use crate::fresnel::dielectric;
+
 /// Share of unpolarised light that a smooth surface between two clear media reflects, in [0, 1].
-/// `cos1` in [0, 1] is the cosine of the angle of incidence, `eta` the index of refraction of the medium it comes from over that of the
-/// medium it enters.
+/// `cos1` in [0, 1] is the cosine of the angle of incidence, `eta` the index of refraction of the medium it
+/// comes from over that of the medium it enters.
 /// Source: Fresnel's equations (Born and Wolf, Principles of Optics, section 1.5.2).
 #[must_use]
 pub fn fresnel_share(cos1: f64, eta: f64) -> f64 {
-    let cos1 = cos1.clamp(0.0, 1.0);
-    let radicand = 1.0 - eta * eta * (1.0 - cos1 * cos1);
-    if radicand <= 0.0 {
-        return 1.0;
-    }
-    let cos2 = radicand.sqrt();
-    let across = (eta * cos1 - cos2) / (eta * cos1 + cos2);
-    let along = (cos1 - eta * cos2) / (cos1 + eta * cos2);
-    0.5 * (across * across + along * along)
+    dielectric(cos1.clamp(0.0, 1.0), eta.recip()).0
 }
 
 #[cfg(test)]

@@ -57,8 +57,13 @@ pub(super) enum Kind {
 struct Ball {
     center: DVec3,
     radius_squared: f64,
+    /// A little less than the square of the distance from the world's origin less that of the radius.
+    least: f64,
     rank: f64,
 }
+
+/// Share of the squares of coordinates that their sums and products are surely exact to.
+const SURE: f64 = 1e-13;
 
 /// A flat piece.
 #[derive(Clone, Copy, Debug)]
@@ -177,7 +182,9 @@ impl Forms {
             texture: [DVec2::ZERO; 3],
         });
         self.opaque_balls |= u64::from(object.opaque) << (self.balls.len() % 64);
-        self.balls.push(Ball { center, radius_squared: radius * radius, rank });
+        let (squared, radius_squared) = (center.length_squared(), radius * radius);
+        let least = squared - radius_squared - SURE * (squared + radius_squared);
+        self.balls.push(Ball { center, radius_squared, least, rank });
     }
 
     /// The coordinates of an object, to be combined to those of a sheet.
@@ -344,16 +351,24 @@ impl Forms {
         }
     }
 
-    /// A bit for each ball that the line of a live ray meets ahead of its origin. To look at all first
+    /// A bit for each ball that the line of a live ray may meet ahead of its origin. To look at all first
     /// takes no branches, and the few that are left can be looked at closely.
+    ///
+    /// The distance of the origin from the ball is expanded into products of both centres, which takes fewer
+    /// steps and loses digits, so a little room is left.
     #[inline(always)]
     fn balls_ahead<S: Simd>(&self, simd: S, o: V<S>, d: V<S>, live: M<S>) -> u64 {
         let zero = F::splat(simd, 0.0);
+        let (along, squared) = (o.dot(d), o.dot(o) * F::splat(simd, 1.0 - SURE));
+        let twice = o.add(o);
         let mut ahead = 0;
         for (number, ball) in self.balls.iter().enumerate() {
-            let (middle, half_squared) = ball.chord(simd, o, d);
-            let in_front = middle.simd_gt(zero) | (middle * middle).simd_lt(half_squared);
-            let met = live & in_front & half_squared.simd_gt(zero);
+            let center = V::splat(simd, ball.center);
+            let middle = center.dot(d) - along;
+            // Square of the tangent's length from the origin; negative within the ball.
+            let tangent = squared + F::splat(simd, ball.least) - center.dot(twice);
+            let met =
+                live & (middle.simd_gt(zero) | tangent.simd_lt(zero)) & (middle * middle).simd_gt(tangent);
             ahead |= u64::from(met.any_true()) << (number % 64);
         }
         ahead

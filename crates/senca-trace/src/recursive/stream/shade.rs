@@ -536,7 +536,7 @@ impl Tracer<'_> {
         let normal = V::select(towards, places.face, seen);
         let cos = normal.dot(d);
         if (mirrors & fresnel).any_true() {
-            let reflected = fresnel_shares(simd, -cos, F::splat(simd, 1.0) / ior);
+            let reflected = fresnel_shares(simd, -cos, ior);
             share = channels!(k => fresnel.select(share[k] * reflected, share[k]));
         }
         let weight = channels!(k => weight[k] * share[k]);
@@ -678,18 +678,18 @@ fn above<S: Simd>(simd: S, direction: V<S>, seen: V<S>) -> V<S> {
     V::select(low, lifted, direction)
 }
 
-/// [`crate::recursive::optics::fresnel_share`].
+/// [`crate::fresnel::dielectric`] at eight places.
 #[inline(always)]
-fn fresnel_shares<S: Simd>(simd: S, cos1: F<S>, eta: F<S>) -> F<S> {
+fn fresnel_shares<S: Simd>(simd: S, cos: F<S>, eta: F<S>) -> F<S> {
     let (zero, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
-    let cos1 = larger(cos1, zero);
-    let cos1 = cos1.simd_lt(one).select(cos1, one);
-    let radicand = one - eta * eta * (one - cos1 * cos1);
-    let cos2 = radicand.sqrt();
-    let across = (eta * cos1 - cos2) / (eta * cos1 + cos2);
-    let along = (cos1 - eta * cos2) / (cos1 + eta * cos2);
+    let cos = larger(cos, zero);
+    let cos = cos.simd_lt(one).select(cos, one);
+    let squared = one - (one - cos * cos) / (eta * eta);
+    let beyond = squared.sqrt();
+    let across = (cos - eta * beyond) / (cos + eta * beyond);
+    let along = (eta * cos - beyond) / (eta * cos + beyond);
     let share = F::splat(simd, 0.5) * (across * across + along * along);
-    radicand.simd_gt(zero).select(share, one)
+    squared.simd_gt(zero).select(share, one)
 }
 
 /// Light of a lamp that is the same from everywhere.

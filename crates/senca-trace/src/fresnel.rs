@@ -7,7 +7,7 @@ use senca_math::glam::DVec3;
 ///
 /// `cos` >= 0 is the cosine of the angle of incidence, `eta` the index of refraction beyond the border
 /// over that on this side. Source: Fresnel 1823; Born and Wolf, section 1.5.2.
-pub(super) fn dielectric(cos: f64, eta: f64) -> (f64, f64) {
+pub(crate) fn dielectric(cos: f64, eta: f64) -> (f64, f64) {
     let cos2_beyond = 1.0 - (1.0 - cos * cos) / (eta * eta);
     if cos2_beyond <= 0.0 {
         return (1.0, 0.0);
@@ -19,13 +19,13 @@ pub(super) fn dielectric(cos: f64, eta: f64) -> (f64, f64) {
 }
 
 /// The mirrored direction of `w`, both leaving the surface; `normal` is of unit length.
-pub(super) fn mirrored(w: DVec3, normal: DVec3) -> DVec3 {
+pub(crate) fn mirrored(w: DVec3, normal: DVec3) -> DVec3 {
     2.0 * w.dot(normal) * normal - w
 }
 
 /// Direction in which light goes on beyond the border, for `w` leaving it on this side, where the
 /// unit `normal` is; `cos_beyond` is from [`dielectric`].
-pub(super) fn refracted(w: DVec3, normal: DVec3, eta: f64, cos_beyond: f64) -> DVec3 {
+pub(crate) fn refracted(w: DVec3, normal: DVec3, eta: f64, cos_beyond: f64) -> DVec3 {
     (w.dot(normal) / eta - cos_beyond) * normal - w / eta
 }
 
