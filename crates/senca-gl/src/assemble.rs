@@ -258,6 +258,9 @@ impl Context {
             }
             return;
         }
+        if plan.simple_flat {
+            return self.flat_polygons(mode, plan, p, order);
+        }
         let flat = self.state.lighting.shade_model == gl::FLAT;
         let secondary = plan.layout.secondary;
         let stride = usize::from(plan.layout.stride);
@@ -278,6 +281,32 @@ impl Context {
             if corners.len() >= 3 {
                 self.polygon(corners, plan);
             }
+        });
+    }
+
+    /// Polygons of one colour each that need nothing else.
+    fn flat_polygons(&mut self, mode: Enum, plan: &Plan, p: &Processed, order: Order<'_>) {
+        let stride = usize::from(plan.layout.stride);
+        let (secondary, sized) = (plan.layout.secondary.map(usize::from), self.immediate_sizes());
+        self.begin_batch(Kind::Triangles, plan.layout);
+        let batch = &mut self.batch;
+        each_polygon(mode, order.count, |numbers, provoking| {
+            let from = &p.varyings[order.at(provoking) * stride..][..stride];
+            let base = batch.positions.len() as u32;
+            for &k in numbers {
+                let i = order.at(k);
+                batch.positions.push(p.positions[i]);
+                let at = batch.varyings.len();
+                batch.varyings.extend_from_slice(&p.varyings[i * stride..][..stride]);
+                batch.varyings[at..at + 4].copy_from_slice(&from[..4]);
+                if let Some(second) = secondary {
+                    batch.varyings[at + second..][..3].copy_from_slice(&from[second..][..3]);
+                }
+                if sized {
+                    batch.sizes.push(p.sizes.get(i).copied().unwrap_or(1.0));
+                }
+            }
+            number_fan(base, numbers.len(), &mut batch.indices);
         });
     }
 
@@ -369,12 +398,17 @@ impl Context {
         for v in corners {
             self.emit(v);
         }
-        if corners.len() == 4 {
-            return self.batch.indices.extend([0, 1, 3, 1, 2, 3].map(|k| base + k));
-        }
-        for k in 1..corners.len() as u32 - 1 {
-            self.batch.indices.extend([base, base + k, base + k + 1]);
-        }
+        number_fan(base, corners.len(), &mut self.batch.indices);
+    }
+}
+
+/// The triangles of a convex polygon of `count` corners, numbered from `base` on.
+fn number_fan(base: u32, count: usize, indices: &mut Vec<u32>) {
+    if count == 4 {
+        return indices.extend([0, 1, 3, 1, 2, 3].map(|k| base + k));
+    }
+    for k in 1..(count as u32).saturating_sub(1) {
+        indices.extend([base, base + k, base + k + 1]);
     }
 }
 

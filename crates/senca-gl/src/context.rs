@@ -80,6 +80,8 @@ pub struct Context {
     pub(crate) queries: query::Occlusion,
     pub(crate) debug: crate::debug::Debug,
     pub(crate) batch: Batch,
+    /// To be done before the batch.
+    pub(crate) waiting_clear: Option<crate::framebuffer::WaitingClear>,
     /// State that drawing depends on may differ from that of the batch.
     pub(crate) raster_changed: bool,
     /// The state that vertices depend on may have changed since [`crate::vertex::Plan`] was made.
@@ -128,6 +130,7 @@ impl Context {
             queries: query::Occlusion::default(),
             debug: crate::debug::Debug::default(),
             batch: Batch::default(),
+            waiting_clear: None,
             raster_changed: true,
             vertex_changed: true,
             rasterizer: TiledRasterizer::default(),

@@ -93,15 +93,19 @@ impl Map {
         (bernstein(order, t), slope.map(|s| s / (to - from)))
     }
 
-    fn sum(&self, components: usize, u: &[f32; MAX_ORDER], v: &[f32; MAX_ORDER]) -> [f32; 4] {
-        let mut out = [0.0; 4];
-        for (i, row) in self.points.chunks(self.order[1] * components).enumerate() {
-            for (j, point) in row.chunks(components).enumerate() {
-                let w = u[i] * v[j];
-                out.iter_mut().zip(point).for_each(|(o, p)| *o += w * p);
+    /// The curve along v at weights along u: its control points.
+    fn curve(&self, components: usize, u: &[f32; MAX_ORDER]) -> Vec<[f32; 4]> {
+        let mut curve = vec![[0.0; 4]; self.order[1]];
+        for (row, u) in self.points.chunks_exact(self.order[1] * components).zip(u) {
+            for (to, point) in curve.iter_mut().zip(row.chunks_exact(components)) {
+                to.iter_mut().zip(point).for_each(|(to, p)| *to += u * p);
             }
         }
-        out
+        curve
+    }
+
+    fn sum(&self, components: usize, u: &[f32; MAX_ORDER], v: &[f32; MAX_ORDER]) -> [f32; 4] {
+        weighted(&self.curve(components, u), v)
     }
 
     fn at(&self, components: usize, u: f32, v: f32) -> [f32; 4] {
@@ -113,6 +117,18 @@ impl Map {
         let ((bu, du), (bv, dv)) = (self.weights(0, u), self.weights(1, v));
         [self.sum(components, &bu, &bv), self.sum(components, &du, &bv), self.sum(components, &bu, &dv)]
     }
+}
+
+/// The sum of control points by their weights.
+#[inline]
+fn weighted(points: &[[f32; 4]], weights: &[f32; MAX_ORDER]) -> [f32; 4] {
+    let mut out = [0.0; 4];
+    for (point, w) in points.iter().zip(weights) {
+        for k in 0..4 {
+            out[k] += w * point[k];
+        }
+    }
+    out
 }
 
 /// A target's number, from `MAP1_COLOR_4` or `MAP2_COLOR_4` on.
@@ -410,27 +426,28 @@ fn tex_coords(v: [f32; 4], n: usize) -> [f32; 4] {
     std::array::from_fn(|k| if k < n { v[k] } else { [0.0, 0.0, 0.0, 1.0][k] })
 }
 
-/// A map with its weights at the parameters of a grid.
-struct Grid<'a> {
-    map: &'a Map,
-    components: usize,
-    u: Vec<([f32; MAX_ORDER], [f32; MAX_ORDER])>,
+/// A map at the parameters of a grid: along u the curves it has there and their changes, along v the weights.
+struct Grid {
+    u: Vec<[Vec<[f32; 4]>; 2]>,
     v: Vec<([f32; MAX_ORDER], [f32; MAX_ORDER])>,
 }
 
-impl<'a> Grid<'a> {
-    fn new(map: &'a Map, components: usize, us: &[f32], vs: &[f32]) -> Self {
-        let weights = |axis: usize, at: &[f32]| at.iter().map(|t| map.weights(axis, *t)).collect();
-        Self { map, components, u: weights(0, us), v: weights(1, vs) }
+impl Grid {
+    fn new(map: &Map, components: usize, us: &[f32], vs: &[f32]) -> Self {
+        let curves = |t: &f32| {
+            let (value, slope) = map.weights(0, *t);
+            [map.curve(components, &value), map.curve(components, &slope)]
+        };
+        Self { u: us.iter().map(curves).collect(), v: vs.iter().map(|t| map.weights(1, *t)).collect() }
     }
 
     fn at(&self, i: usize, j: usize) -> [f32; 4] {
-        self.map.sum(self.components, &self.u[i].0, &self.v[j].0)
+        weighted(&self.u[i][0], &self.v[j].0)
     }
 
     fn with_slopes(&self, i: usize, j: usize) -> [[f32; 4]; 3] {
-        let (u, v) = (&self.u[i], &self.v[j]);
-        [(&u.0, &v.0), (&u.1, &v.0), (&u.0, &v.1)].map(|(u, v)| self.map.sum(self.components, u, v))
+        let ([curve, change], (value, slope)) = (&self.u[i], &self.v[j]);
+        [weighted(curve, value), weighted(change, value), weighted(curve, slope)]
     }
 
     fn each<T>(&self, f: impl Fn(&Self, usize, usize) -> T) -> Vec<T> {

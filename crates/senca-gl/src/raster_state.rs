@@ -182,12 +182,12 @@ impl Context {
             self.raster_changed = false;
             let state = RasterState::new(self);
             if state != self.batch.state {
-                self.flush_batch();
+                self.draw_gathered();
                 self.batch.state = state;
             }
         }
         if self.batch.kind != kind || self.batch.layout != layout || self.batch.positions.len() >= FULL {
-            self.flush_batch();
+            self.draw_gathered();
             (self.batch.kind, self.batch.layout) = (kind, layout);
         }
         self.batch.positions.len() as u32
@@ -206,14 +206,14 @@ impl Context {
         // What is drawn next has a state of its own again.
         self.raster_changed = true;
         if state != self.batch.state {
-            self.flush_batch();
+            self.draw_gathered();
             self.batch.state = state;
         }
         if self.batch.kind != Kind::Points
             || self.batch.layout != layout
             || self.batch.positions.len() >= FULL
         {
-            self.flush_batch();
+            self.draw_gathered();
             (self.batch.kind, self.batch.layout) = (Kind::Points, layout);
         }
         self.batch.positions.len() as u32
@@ -221,6 +221,12 @@ impl Context {
 
     /// Draws what waits.
     pub(crate) fn flush_batch(&mut self) {
+        self.draw_gathered();
+        self.settle_clear();
+    }
+
+    /// Draws what has been gathered. A clear goes on waiting if that is nothing.
+    fn draw_gathered(&mut self) {
         if self.batch.indices.is_empty() {
             self.batch.clear();
             return;

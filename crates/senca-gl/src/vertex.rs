@@ -164,6 +164,8 @@ pub(crate) struct Plan {
     point: crate::state::Point,
     /// Whether primitives need no look of their own: filled, smooth, one colour for both sides, no user clip planes.
     pub(crate) simple: bool,
+    /// The same but for being flat.
+    pub(crate) simple_flat: bool,
 }
 
 impl Default for Plan {
@@ -186,6 +188,7 @@ impl Default for Plan {
             needs_sizes: false,
             point: crate::state::Point::default(),
             simple: true,
+            simple_flat: false,
         }
     }
 }
@@ -244,6 +247,7 @@ impl Plan {
         let two_sided = lighting && s.lighting.two_side;
         let filled = s.polygon.mode == [gl::FILL; 2];
         let flat = s.lighting.shade_model == gl::FLAT;
+        let plain = filled && !two_sided && clip_planes.is_empty() && context.render_mode.is_render();
         let eye_from_object_normal = normal_matrix(eye_from_object);
         let third = eye_from_object_normal.transpose().col(2).length();
         Self {
@@ -267,11 +271,8 @@ impl Plan {
             needs_edges: !filled,
             needs_sizes,
             point: s.point,
-            simple: filled
-                && !flat
-                && !two_sided
-                && clip_planes.is_empty()
-                && context.render_mode.is_render(),
+            simple: plain && !flat,
+            simple_flat: plain && flat,
             clip_planes,
         }
     }

@@ -74,6 +74,13 @@ impl Context {
         }
     }
 
+    /// The rows in which pixels of the window may have changed since this was last asked, the lowest being 0. What
+    /// waits to be drawn does not count yet.
+    pub fn take_changed_rows(&mut self) -> std::ops::Range<usize> {
+        let rows = self.framebuffers.window.take_changed();
+        rows.start as usize..rows.end as usize
+    }
+
     /// The colours that the window shows, of as many pixels as it has; rows without space between.
     #[must_use]
     pub fn window_colors(&self) -> Colors<'_> {

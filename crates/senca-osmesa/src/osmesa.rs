@@ -100,6 +100,7 @@ fn attach(handle: usize, buffer: Out<u8>, kind: u32, width: i32, height: i32) ->
         }
         (window.layout, window.kind) = (Layout { order, kind: number }, kind);
         (window.buffer, window.width, window.height) = (buffer.address(), width, height);
+        window.forget_shown();
         true
     })
 }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use senca_gl::{Context, gl};
 use senca_gl_abi::current::Window;
 use senca_gl_abi::memory::Out;
+use std::ops::Range;
 
 /// Names of OSMesa that are not OpenGL's.
 pub(crate) mod osmesa {
@@ -170,6 +171,19 @@ pub(crate) struct Picture {
     pub(crate) depth_bits: u32,
     /// The depth buffer as it was last asked for.
     pub(crate) depths: Vec<u32>,
+    /// How the picture was last written; `None` when nothing of it is in the program's memory.
+    shown: Option<Shown>,
+}
+
+/// Everything that a picture in the program's memory depends on but for the pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shown {
+    layout: Layout,
+    buffer: usize,
+    size: [u32; 2],
+    row_length: u32,
+    y_up: bool,
+    clamp: bool,
 }
 
 impl Picture {
@@ -188,7 +202,28 @@ impl Picture {
             clamp: false,
             depth_bits,
             depths: Vec::new(),
+            shown: None,
         }
+    }
+
+    /// Says that the program's memory holds nothing of the picture yet.
+    pub(crate) fn forget_shown(&mut self) {
+        self.shown = None;
+    }
+
+    /// Notes that the picture is about to be written; returns the rows that must be, those that have changed
+    /// unless it was written otherwise before.
+    fn rows_to_show(&mut self, changed: Range<usize>) -> Range<usize> {
+        let shown = Shown {
+            layout: self.layout,
+            buffer: self.buffer,
+            size: [self.width, self.height],
+            row_length: self.row_length,
+            y_up: self.y_up,
+            clamp: self.clamp,
+        };
+        let same = self.shown.replace(shown) == Some(shown);
+        if same { changed } else { 0..self.height as usize }
     }
 
     /// Bytes from one row to the next, and bytes of a row that are written.
@@ -201,6 +236,7 @@ impl Picture {
     /// The depth buffer in words as programs expect it of OSMesa: 16 bits in 2 bytes when that was asked for,
     /// else 24 bits in the lower part of 4. Returns bytes of a word and the address.
     pub(crate) fn read_depths(&mut self, context: &mut Context) -> (usize, usize) {
+        context.finish_window();
         let depths = context.window_depths();
         let quantized = |z: f32, top: f64| (f64::from(z.clamp(0.0, 1.0)) * top).round_ties_even() as u32;
         let bytes = if self.depth_bits <= 16 {
@@ -217,10 +253,14 @@ impl Picture {
 }
 
 impl Window for Picture {
-    /// Draws what is waiting and copies the picture to the program's memory.
+    /// Draws what is waiting and copies what has changed of the picture to the program's memory.
     fn present(&mut self, context: &mut Context) {
         context.finish_window();
         if self.buffer == 0 {
+            return;
+        }
+        let changed = self.rows_to_show(context.take_changed_rows());
+        if changed.is_empty() {
             return;
         }
         let (stride, row) = self.row_bytes();
@@ -229,9 +269,12 @@ impl Window for Picture {
         let Some(bytes) = out.bytes((height - 1) * stride + row) else { return };
         let width = self.width as usize;
         let (layout, clamp, up) = (self.layout, self.clamp, self.y_up);
+        let lines = if up { changed } else { height - changed.end..height - changed.start };
+        let bytes = &mut bytes[lines.start * stride..(lines.end - 1) * stride + row];
+        let first = lines.start;
         let from = |k: usize| if up { k } else { height - 1 - k };
         let write = |(k, to): (usize, &mut [u8])| {
-            let at = from(k) * width;
+            let at = from(first + k) * width;
             let to = &mut to[..row];
             let pixels = row / layout.bytes();
             match context.window_colors() {
@@ -242,7 +285,7 @@ impl Window for Picture {
         if bytes.len() < PARALLEL_BYTES {
             bytes.chunks_mut(stride).enumerate().for_each(write);
         } else {
-            bytes.par_chunks_mut(stride).with_min_len(height.div_ceil(8)).enumerate().for_each(write);
+            bytes.par_chunks_mut(stride).with_min_len(lines.len().div_ceil(8)).enumerate().for_each(write);
         }
     }
 }

@@ -47,6 +47,8 @@ pub(crate) struct Batch {
     pub(crate) inv_w: PlaneLanes,
     /// Terms of the varyings, by slot; see [`TriangleVaryings`].
     pub(crate) varyings: Box<[PlaneLanes; MAX_VARYINGS]>,
+    /// Varyings of the fragments that go to a stage: memory that is used again.
+    pub(crate) interpolated: Vec<[f32; LANES]>,
     /// Bit by lane: weights are linear on the screen.
     pub(crate) affine: u16,
     /// Bit by lane: corners 1 and 2 exchanged; the triangle shows its front.
@@ -76,6 +78,7 @@ impl Default for Batch {
             b2: [f; 3],
             inv_w: [f; 3],
             varyings: Box::new([[f; 3]; MAX_VARYINGS]),
+            interpolated: Vec::with_capacity(MAX_VARYINGS),
             affine: 0,
             swapped: 0,
         }
@@ -124,7 +127,8 @@ struct Corners<S: Simd> {
 
 impl Batch {
     /// Memory of its varyings.
-    pub(crate) const BOXED_BYTES: usize = 2 * MAX_VARYINGS * size_of::<PlaneLanes>();
+    pub(crate) const BOXED_BYTES: usize =
+        2 * MAX_VARYINGS * size_of::<PlaneLanes>() + MAX_VARYINGS * size_of::<[f32; LANES]>();
 
     /// Puts a triangle into the next lane; returns the lane. Varyings are the caller's to fill in.
     #[inline(always)]

@@ -227,6 +227,8 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         if x0 >= x1 || y0 >= y1 {
             return;
         }
+        let lanes =
+            [edge_lanes(simd, b, 0, lane), edge_lanes(simd, b, 1, lane), edge_lanes(simd, b, 2, lane)];
         let (first, last) = (x0 >> 3, (x1 - 1) >> 3);
         for by in y0 >> 3..=(y1 - 1) >> 3 {
             let (mut active, mut full) = (0u32, 0u32);
@@ -249,7 +251,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             }
             let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
             for pair in top..=bottom {
-                self.row(simd, lane, by, pair, active, full);
+                self.row(simd, lane, &lanes, [by, pair], [active, full]);
             }
             if full != 0 && self.pass.lowers_farthest {
                 self.lower_farthest(lane, by, full);
@@ -324,15 +326,22 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// Two rows of pixels, block by block.
     #[inline(always)]
-    fn row<S: Simd>(&mut self, simd: S, lane: usize, by: i32, pair: i32, active: u32, full: u32) {
+    fn row<S: Simd>(
+        &mut self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        [by, pair]: [i32; 2],
+        [active, full]: [u32; 2],
+    ) {
         let b = &*self.batch;
         let y = 8 * by + 2 * pair;
         let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, (b.offset[1][lane] + y) as f32);
         let row = Row {
             edges: [
-                edge_row(simd, b, 0, lane, y),
-                edge_row(simd, b, 1, lane, y),
-                edge_row(simd, b, 2, lane, y),
+                lanes[0] + edge_at(simd, b, 0, lane, y),
+                lanes[1] + edge_at(simd, b, 1, lane, y),
+                lanes[2] + edge_at(simd, b, 2, lane, y),
             ],
             fy,
             depth: row_of(simd, &b.depth, lane, fy),
@@ -492,15 +501,24 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         mask: u16,
     ) -> u16 {
         let Some(stage) = self.pass.stage else { return 0 };
-        let (mut values, mut count) = ([[0.0; LANES]; MAX_VARYINGS], 0);
+        let (mut values, mut count) = (std::mem::take(&mut self.batch.interpolated), 0);
         if self.pass.needs.shades {
             count = self.pass.slots.len().min(MAX_VARYINGS);
+            values.resize(count, [0.0; LANES]);
             let at = self.at(simd, place.lane, fx, row.fy);
-            for (slot, value) in values.iter_mut().enumerate().take(count) {
+            for (slot, value) in values.iter_mut().enumerate() {
                 varying(simd, &self.batch.varyings[slot], place.lane, &at).store_array(value);
             }
         }
-        let mut fragments = self.fragments(place, mask, z.to_array(), &values[..count]);
+        let fragments = self.fragments(place, mask, z.to_array(), &values[..count]);
+        let passed = self.run_stage(stage, fragments, place);
+        self.batch.interpolated = values;
+        passed
+    }
+
+    /// Has the stage colour and merge fragments; returns those that passed.
+    #[inline(always)]
+    fn run_stage(&mut self, stage: &dyn FragmentStage, mut fragments: Fragments<'_>, place: Place) -> u16 {
         let mut shaded = Shaded::default();
         if self.pass.needs.shades {
             stage.shade(&fragments, &mut shaded);
@@ -630,13 +648,17 @@ pub(crate) fn lanes_from<S: Simd>(simd: S, [x, y]: [f32; 2]) -> [f32x16<S>; 2] {
     ]
 }
 
-/// Values of edge `k` at the vector at column 0, row `y` of the tile.
+/// What edge `k` changes by from the first pixel of a vector to each of its lanes.
 #[inline(always)]
-fn edge_row<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, y: i32) -> i32x16<S> {
-    let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
-    i32x16::load_array(simd, LANE_X) * i32x16::splat(simd, dx)
-        + i32x16::load_array(simd, LANE_Y) * i32x16::splat(simd, dy)
-        + i32x16::splat(simd, b.edge[k][lane].wrapping_add(dy.wrapping_mul(y)))
+fn edge_lanes<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize) -> i32x16<S> {
+    i32x16::load_array(simd, LANE_X) * i32x16::splat(simd, b.edge_dx[k][lane])
+        + i32x16::load_array(simd, LANE_Y) * i32x16::splat(simd, b.edge_dy[k][lane])
+}
+
+/// The value of edge `k` at column 0, row `y` of the tile.
+#[inline(always)]
+fn edge_at<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, y: i32) -> i32x16<S> {
+    i32x16::splat(simd, b.edge[k][lane].wrapping_add(b.edge_dy[k][lane].wrapping_mul(y)))
 }
 
 /// A varying at 16 pixels; see [`crate::assemble::TriangleVaryings::at`].

@@ -14,7 +14,7 @@
 //! every pixel meets its fragments in the same order as with one strip that is the whole picture.
 
 use crate::api::{
-    Counters, Interpolation, LineStipple, Primitives, Shading, State, StippleJoins, StrokeRule,
+    Counters, Interpolation, LANES, LineStipple, Primitives, Shading, State, StippleJoins, StrokeRule,
 };
 use crate::assemble::{varyings_of, vertex_count};
 use crate::clip::{VIEW_VOLUME, clip_line, wholly_outside};
@@ -355,22 +355,50 @@ impl Line {
         let way: [f32; 4] = std::array::from_fn(|k| to[k] - from[k]);
         let screen_space = state.interpolation == Interpolation::Screen;
         let mut across = Across::new(walk, steps.start);
-        for step in steps {
-            let (a, b) = (walk.first + walk.sign * step, across.pixel);
-            across.advance();
-            let (x, y) = if walk.along_x { (a, b) } else { (b, a) };
-            let at = ((y + oy) as usize - plain.first_row) * plain.width + (x + ox) as usize;
-            let t = walk.share(a);
-            if !plain.passes(at, self.depth(t), state) {
-                continue;
+        let mut step = steps.start;
+        // Many steps at a time, each calculation a loop of its own.
+        while step < steps.end {
+            let count = (steps.end - step).min(LANES as i64) as usize;
+            let (mut at, mut runs) = ([0usize; LANES], [0i32; LANES]);
+            for (at, run) in at.iter_mut().zip(&mut runs).take(count) {
+                let (a, b) = (walk.first + walk.sign * step, across.pixel);
+                across.advance();
+                step += 1;
+                let (x, y) = if walk.along_x { (a, b) } else { (b, a) };
+                *at = ((y + oy) as usize - plain.first_row) * plain.width + (x + ox) as usize;
+                *run = walk.run(a) as i32;
             }
-            let parameter = self.parameter(t, screen_space);
-            let color = std::array::from_fn(|k| from[k] + parameter * way[k]);
-            if let Some(pixel) = plain.pixels.get_mut(at) {
-                *pixel = rgba8_from_rgba(color);
+            let shares = runs.map(|run| walk.share_of(run));
+            let colors = self.plain_colors(&shares, screen_space, &from, &way);
+            for i in 0..count {
+                let depth = if plain.depth.is_some() { self.depth(shares[i]) } else { 0.0 };
+                plain.put(at[i], depth, state, colors[i]);
             }
         }
         true
+    }
+
+    /// Colours at shares of the way, in 8 bits; `from` and `way` are of the whole line.
+    #[inline(always)]
+    fn plain_colors(
+        &self,
+        shares: &[f32; LANES],
+        screen_space: bool,
+        from: &[f32; 4],
+        way: &[f32; 4],
+    ) -> [[u8; 4]; LANES] {
+        let parameters = shares.map(|t| self.parameter(t, screen_space));
+        let mut words = [0u32; LANES];
+        for k in 0..4 {
+            let (from, way) = (from[k], way[k]);
+            for (word, parameter) in words.iter_mut().zip(&parameters) {
+                let v = from + parameter * way;
+                let low = if v > 0.0 { v } else { 0.0 };
+                let clamped = if low < 1.0 { low } else { 1.0 };
+                *word |= ((clamped * 255.0 + 0.5) as i32 as u32) << (8 * k);
+            }
+        }
+        words.map(u32::to_le_bytes)
     }
 
     fn draw_steps(&self, sink: &mut Sink<'_, '_>, stipple: u64, values: &impl Fn(i32, i32, &mut [f32])) {
@@ -419,7 +447,7 @@ impl Line {
     fn parameter(&self, t: f32, screen_space: bool) -> f32 {
         let [t0, t1] = self.part;
         let (q0, q1) = (self.start.inv_w, self.end.inv_w);
-        let s = if screen_space { t } else { t * q1 / (q0 + t * (q1 - q0)) };
+        let s = if screen_space || q0 == q1 { t } else { t * q1 / (q0 + t * (q1 - q0)) };
         t0 + s * (t1 - t0)
     }
 }
@@ -479,11 +507,24 @@ impl Walk {
     /// The share of the way to the end at pixel `a` along.
     #[inline(always)]
     fn share(&self, a: i64) -> f32 {
-        let run = a * self.sub + self.sub / 2 - self.start[0];
+        self.share_of(self.run(a) as i32)
+    }
+
+    /// The way from the start to the centre of pixel `a` along, in sub-pixels; below 2^27.
+    #[inline(always)]
+    fn run(&self, a: i64) -> i64 {
+        a * self.sub + self.sub / 2 - self.start[0]
+    }
+
+    /// The share of the way to the end of a run.
+    #[inline(always)]
+    fn share_of(&self, run: i32) -> f32 {
         if self.way[0] == 0 {
             return 0.0;
         }
-        (run as f32 / self.way[0] as f32).clamp(0.0, 1.0)
+        let share = run as f32 / self.way[0] as f32;
+        let low = if share > 0.0 { share } else { 0.0 };
+        if low < 1.0 { low } else { 1.0 }
     }
 
     /// Where the lower side of the line is at pixel `a` along, times `self.sub * length`.

@@ -134,7 +134,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     ) {
         let Some(stage) = self.pass.stage else { return };
         let Place { lane, block, .. } = place;
-        let (mut values, mut count) = ([[0.0; LANES]; MAX_VARYINGS], 0);
+        let (mut values, mut count) = (std::mem::take(&mut self.batch.interpolated), 0);
         let mut depth = [0.0; LANES];
         if self.pass.needs.shades {
             count = self.pass.slots.len().min(MAX_VARYINGS);
@@ -143,7 +143,8 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             self.samples_depth(simd, lane, corner).store_array(&mut depth);
             let [fx, fy] = self.samples_at(simd, lane, corner);
             let at = self.at(simd, lane, fx, fy);
-            for (slot, value) in values.iter_mut().enumerate().take(count) {
+            values.resize(count, [0.0; LANES]);
+            for (slot, value) in values.iter_mut().enumerate() {
                 varying(simd, &self.batch.varyings[slot], lane, &at).store_array(value);
             }
         }
@@ -185,6 +186,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 keep.select(u32x16::splat(simd, self.batch.ids[lane]), stored).store_array(plane);
             }
         }
+        self.batch.interpolated = values;
     }
 }
 

@@ -254,14 +254,25 @@ fn remainder<S: Simd>(simd: S, i: I<S>, n: i32) -> I<S> {
     rest.max(zero).min(n - I::splat(simd, 1))
 }
 
+/// Number of the nearest texel.
 #[inline(always)]
-fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Rgba<S> {
+pub(crate) fn nearest_index<S: Simd>(
+    simd: S,
+    sampler: &Sampler,
+    level: &TextureLevel,
+    uv: [F<S>; 2],
+) -> I<S> {
     let x = position::<S, false>(simd, sampler.grid, uv[0], level.width);
     let y = position::<S, false>(simd, sampler.grid, uv[1], level.height);
     let half = F::splat(simd, 0.5);
     let i = wrapped(simd, sampler.wrap_u, (x + half).floor().to_int(), level.width);
     let j = wrapped(simd, sampler.wrap_v, (y + half).floor().to_int(), level.height);
-    let index = j * I::splat(simd, level.width as i32) + i;
+    j * I::splat(simd, level.width as i32) + i
+}
+
+#[inline(always)]
+fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Rgba<S> {
+    let index = nearest_index(simd, sampler, level, uv);
     match &level.texels {
         Texels::Rgba8(texels) => crate::blend::unpack(simd, gather(simd, texels, index)),
         Texels::Shared(texels) => crate::blend::unpack(simd, gather(simd, texels.get(), index)),
@@ -414,7 +425,7 @@ fn gather<S: Simd>(simd: S, texels: &[[u8; 4]], index: I<S>) -> u32x16<S> {
 // its register and every texel put into one, lane by lane, at twice the cost.
 
 #[inline(never)]
-fn gather_words(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [u32; LANES]) {
+pub(crate) fn gather_words(texels: &[[u8; 4]], index: &[i32; LANES], out: &mut [u32; LANES]) {
     for (to, &i) in out.iter_mut().zip(index) {
         *to = u32::from_le_bytes(texels.get(i as u32 as usize).copied().unwrap_or_default());
     }

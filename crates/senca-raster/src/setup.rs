@@ -129,7 +129,11 @@ impl ScreenMap {
     }
 
     fn rounded(&self, x: f32, y: f32, z: f32, inv_w: f32) -> ScreenVertex {
-        let fixed = |v: f32| (v + 0.5).floor() as i32;
+        // Rounded down by hand: without SSE 4.1 `floor` is a call.
+        let fixed = |v: f32| {
+            let whole = (v + 0.5) as i32;
+            whole - i32::from(v + 0.5 < whole as f32)
+        };
         ScreenVertex { x: fixed(x), y: fixed(y), z: z.min(1.0) * self.z_scale + self.z_offset, inv_w }
     }
 

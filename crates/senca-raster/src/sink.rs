@@ -1,7 +1,7 @@
 //! Where the fragments of lines, points and antialiased triangles go: a strip of the target, one
 //! fragment after another.
 
-use crate::api::{ColorSource, Counters, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
+use crate::api::{ColorSource, Compare, Counters, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State};
 use crate::multisample::{SAMPLES, place_of, sample_of};
 use crate::setup::{Bounds, ScreenMap};
 use crate::shade::color_of_values;
@@ -132,9 +132,11 @@ impl<'a, 't> Sink<'a, 't> {
         let Some(ColorPlane::Rgba8(pixels)) = self.target.color.as_mut().filter(|_| simple) else {
             return None;
         };
+        // A test that all pass and that leaves no trace needs no look at the depths.
+        let looks = self.state.depth_write || self.state.depth_test != Compare::Always;
         Some(Plain {
             pixels,
-            depth: self.target.depth.as_deref_mut(),
+            depth: self.target.depth.as_deref_mut().filter(|_| looks),
             width,
             first_row: self.first_row as usize,
             color: *color,

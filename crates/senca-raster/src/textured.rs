@@ -13,17 +13,18 @@
 //! Each stage is a loop of its own: within a vector nearly every step waits for the one before, and a
 //! processor finds the work of the next vectors to fill that time only when it is not far ahead.
 //!
-//! This holds for linear filters on texels of 8 bits; other textures are read vector by vector
-//! ([`crate::sample`]).
+//! This holds for linear filters on texels of 8 bits, and, with fewer stages, for the nearest texel of a
+//! single level; other textures are read vector by vector ([`crate::sample`]).
 
 use crate::api::{LANES, MAX_VARYINGS, TextureUnit};
-use crate::blend::Rgba;
+use crate::blend::{Rgba, unpack};
 use crate::cover::{At, ColorPath, Place, TileDraw, colors, lanes_from, splat4, varying};
 use crate::sample::{
-    FARTHEST_TAME, Quads, footprint, lerp, load4, lod_of, mixed, pair_texels, quads, sample, taps,
+    FARTHEST_TAME, Quads, footprint, gather_words, lerp, load4, lod_of, mixed, nearest_index, pair_texels,
+    quads, sample, taps,
 };
 use crate::texture::{Filter, Mip, Texture, TextureLevel};
-use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// Vectors kept at most.
 const WAITING: usize = 16;
@@ -66,6 +67,9 @@ struct Lookup {
     share: [f32; LANES],
     /// What the texture is multiplied by, unless it is the same everywhere.
     color: [[f32; LANES]; 4],
+    /// Numbers of the nearest texels, and those.
+    number: [i32; LANES],
+    texel: [u32; LANES],
 }
 
 /// Fragments between stages: lanes of one vector that read the same levels.
@@ -104,6 +108,13 @@ fn is_staged(unit: &TextureUnit<'_>) -> bool {
     linear && unit.texture.levels[0].texels.rgba8().is_some()
 }
 
+/// The texels, if it is always the nearest of the only level that counts.
+#[inline(always)]
+fn sharp_texels<'a>(unit: &TextureUnit<'a>) -> Option<&'a [[u8; 4]]> {
+    let sharp = unit.sampler.magnify == Filter::Nearest && unit.sampler.minify == Filter::Nearest;
+    unit.texture.levels[0].texels.rgba8().filter(|_| sharp && !has_levels(unit))
+}
+
 /// Whether the level of detail matters.
 #[inline(always)]
 fn has_levels(unit: &TextureUnit<'_>) -> bool {
@@ -138,6 +149,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     #[inline(always)]
     fn shade_waiting_inline<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, slot: usize) {
         let count = std::mem::take(&mut self.queue.len).min(WAITING);
+        if let Some(texels) = sharp_texels(unit) {
+            return self.shade_sharp(simd, unit, texels, slot, count);
+        }
         if !is_staged(unit) {
             for k in 0..count {
                 self.shade_one(simd, unit, slot, self.queue.waiting[k]);
@@ -173,6 +187,47 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             }
         }
         self.finish(simd, unit.texture, staged);
+    }
+
+    /// Vectors that read the nearest texel of the only level.
+    #[inline(always)]
+    fn shade_sharp<S: Simd>(
+        &mut self,
+        simd: S,
+        unit: &TextureUnit<'_>,
+        texels: &[[u8; 4]],
+        slot: usize,
+        count: usize,
+    ) {
+        let level = &unit.texture.levels[0];
+        let constant = matches!(self.pass.color, ColorPath::Constant(_));
+        for k in 0..count {
+            let vector = self.queue.waiting[k];
+            let lane = vector.place.lane;
+            let at = self.at_vector(simd, &vector);
+            let [u, v] =
+                [&self.batch.varyings[slot % MAX_VARYINGS], &self.batch.varyings[(slot + 1) % MAX_VARYINGS]];
+            let uv = [varying(simd, u, lane, &at), varying(simd, v, lane, &at)];
+            let color = self.base_color(simd, lane, &at);
+            let lookup = &mut self.queue.lookups[k];
+            nearest_index(simd, &unit.sampler, level, uv).store_array(&mut lookup.number);
+            if !constant {
+                store4(color, &mut lookup.color);
+            }
+        }
+        for lookup in &mut self.queue.lookups[..count] {
+            gather_words(texels, &lookup.number, &mut lookup.texel);
+        }
+        for k in 0..count {
+            let (vector, lookup) = (self.queue.waiting[k], &self.queue.lookups[k]);
+            let color = match self.pass.color {
+                ColorPath::Constant(rgba) => splat4(simd, rgba),
+                _ => load4(simd, &lookup.color),
+            };
+            let texel = unpack(simd, u32x16::load_array_ref(simd, &lookup.texel));
+            let mask = mask32x16::from_bitmask(simd, u64::from(vector.bits));
+            self.write(simd, vector.place, mask, times(color, texel));
+        }
     }
 
     /// Coordinates and footprint of a vector that waits.

@@ -174,12 +174,7 @@ impl TileBuffer {
                 Some(depth) => fill(&mut self.depth[block], depth),
                 None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
             }
-            let depths = self.depth[block].as_flattened().iter();
-            self.farthest[block] = if touches.reversed {
-                -depths.copied().fold(f32::INFINITY, f32::min)
-            } else {
-                depths.copied().fold(f32::NEG_INFINITY, f32::max)
-            };
+            self.farthest[block] = farthest_of(&self.depth[block], touches.reversed);
         }
         if let Some(plane) = &band.stencil {
             match clear.and_then(|c| c.stencil) {
@@ -239,6 +234,13 @@ impl TileBuffer {
     }
 
     fn fetch_color(&mut self, band: &Band<'_>, tile_x: usize, block: usize) {
+        if let Some(ColorPlane::Rgba8(p)) = &band.color
+            && let Some(rows) = whole_rows(p, band, tile_x, block)
+        {
+            let to = self.rgba8[block].as_flattened_mut().as_chunks_mut::<8>().0;
+            to.iter_mut().zip(rows).for_each(|(to, row)| *to = row.map(u32::from_le_bytes));
+            return;
+        }
         for (y, row) in block_rows(band, block) {
             let range = row_range(band.width, tile_x, block, y);
             match &band.color {
@@ -298,6 +300,20 @@ impl TileBuffer {
             rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block], row));
         }
     }
+}
+
+/// The greatest depth of a block; the greatest negated one if `reversed`.
+#[inline(always)]
+fn farthest_of(block: &Block<f32>, reversed: bool) -> f32 {
+    let mut most = [f32::NEG_INFINITY; LANES];
+    let sign = if reversed { -1.0 } else { 1.0 };
+    for vector in block {
+        for (most, depth) in most.iter_mut().zip(vector) {
+            let depth = sign * depth;
+            *most = if depth > *most { depth } else { *most };
+        }
+    }
+    most.into_iter().fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a })
 }
 
 /// Eight pixels of a block, from number `first` on.
@@ -365,7 +381,10 @@ impl Rows {
             for y in first..(first + 8).min(self.height) {
                 let to = &mut plane[row_range(self.width, self.tile_x, block, y)];
                 let from = get(block, (y - first) * 8);
-                to.copy_from_slice(&from[..to.len()]);
+                match to.first_chunk_mut::<8>() {
+                    Some(to) => *to = from,
+                    None => to.copy_from_slice(&from[..to.len()]),
+                }
             }
         }
     }
@@ -381,7 +400,32 @@ fn block_rows(band: &Band<'_>, block: usize) -> impl Iterator<Item = (usize, usi
     (first..(first + 8).min(band.height)).zip(0..)
 }
 
+/// The eight rows of a block that lies wholly inside the band, of a plane.
+#[inline(always)]
+fn whole_rows<'p, T>(
+    plane: &'p [T],
+    band: &Band<'_>,
+    tile_x: usize,
+    block: usize,
+) -> Option<[&'p [T; 8]; 8]> {
+    let (x, y) = (tile_x + (block % BLOCKS) * 8, (block / BLOCKS) * 8);
+    if x + 8 > band.width || y + 8 > band.height {
+        return None;
+    }
+    let mut rows = [plane.first_chunk::<8>()?; 8];
+    for (k, row) in rows.iter_mut().enumerate() {
+        *row = plane.get((y + k) * band.width + x..)?.first_chunk::<8>()?;
+    }
+    Some(rows)
+}
+
 fn fetch_plane<T: Copy>(to: &mut Block<T>, plane: &[T], band: &Band<'_>, tile_x: usize, block: usize) {
+    if let Some(rows) = whole_rows(plane, band, tile_x, block) {
+        for (to, row) in to.as_flattened_mut().as_chunks_mut::<8>().0.iter_mut().zip(rows) {
+            *to = *row;
+        }
+        return;
+    }
     for (y, row) in block_rows(band, block) {
         let from = &plane[row_range(band.width, tile_x, block, y)];
         to.as_flattened_mut()[row * 8..][..from.len()].copy_from_slice(from);

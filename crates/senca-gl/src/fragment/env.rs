@@ -2,6 +2,7 @@
 //!
 //! Source: OpenGL 1.5, section 3.8.13, tables 3.22 to 3.24; ARB_texture_env_crossbar.
 
+use super::ops::inverse;
 use super::real::{Color, Real, clamped, constant, mixed};
 use crate::state::TexEnv;
 use crate::texture::BaseFormat;
@@ -68,12 +69,17 @@ fn decal<R: Real>(base: BaseFormat, f: Color<R>, t: Color<R>) -> Color<R> {
 
 #[inline(always)]
 fn blend<R: Real>(base: BaseFormat, f: Color<R>, t: Color<R>, c: Color<R>) -> Color<R> {
-    let rgb = |k: usize| f[k].towards(c[k], t[k]);
+    let [r, g, b, a] = [
+        f[0].towards(c[0], t[0]),
+        f[1].towards(c[1], t[1]),
+        f[2].towards(c[2], t[2]),
+        f[3].towards(c[3], t[3]),
+    ];
     match base {
         BaseFormat::Alpha => [f[0], f[1], f[2], f[3] * t[3]],
-        BaseFormat::Luminance | BaseFormat::Rgb => [rgb(0), rgb(1), rgb(2), f[3]],
-        BaseFormat::Intensity => [rgb(0), rgb(1), rgb(2), rgb(3)],
-        _ => [rgb(0), rgb(1), rgb(2), f[3] * t[3]],
+        BaseFormat::Luminance | BaseFormat::Rgb => [r, g, b, f[3]],
+        BaseFormat::Intensity => [r, g, b, a],
+        _ => [r, g, b, f[3] * t[3]],
     }
 }
 
@@ -89,27 +95,35 @@ fn add<R: Real>(base: BaseFormat, f: Color<R>, t: Color<R>) -> Color<R> {
 
 #[inline(always)]
 fn combine<R: Real>(env: &TexEnv, s: &Sources<'_, R>) -> Color<R> {
-    let colors = |k: usize| operand(env, s, env.source_rgb[k], env.operand_rgb[k]);
-    let alphas = |k: usize| operand(env, s, env.source_alpha[k], env.operand_alpha[k])[3];
-    let (a, b, c) = (colors(0), colors(1), colors(2));
-    let scaled = |v: R, scale: f32| (v * v.like(scale)).clamped();
+    // Functions and loops instead of closures: those would be compiled without vector instructions.
+    let (mut colors, mut alphas) = ([s.primary; 3], [s.primary[3]; 3]);
+    for k in 0..3 {
+        colors[k] = operand(env, s, env.source_rgb[k], env.operand_rgb[k]);
+        alphas[k] = operand(env, s, env.source_alpha[k], env.operand_alpha[k])[3];
+    }
+    let [a, b, c] = colors;
+    let alpha = scaled(combined(env.combine_alpha, alphas[0], alphas[1], alphas[2]), env.alpha_scale);
     let extension = matches!(env.combine_rgb, gl::DOT3_RGB_EXT | gl::DOT3_RGBA_EXT);
     if extension || matches!(env.combine_rgb, gl::DOT3_RGB | gl::DOT3_RGBA) {
         let half = a[0].like(0.5);
-        let product = |k: usize| (a[k] - half) * (b[k] - half);
-        let dot = scaled(
-            (product(0) + product(1) + product(2)) * half.like(4.0),
-            if extension { 1.0 } else { env.rgb_scale },
-        );
+        let sum =
+            (a[0] - half) * (b[0] - half) + (a[1] - half) * (b[1] - half) + (a[2] - half) * (b[2] - half);
+        let dot = scaled(sum * half.like(4.0), if extension { 1.0 } else { env.rgb_scale });
         if matches!(env.combine_rgb, gl::DOT3_RGBA | gl::DOT3_RGBA_EXT) {
             return [dot; 4];
         }
-        let alpha = combined(env.combine_alpha, alphas(0), alphas(1), alphas(2));
-        return [dot, dot, dot, scaled(alpha, env.alpha_scale)];
+        return [dot, dot, dot, alpha];
     }
-    let rgb = |k: usize| scaled(combined(env.combine_rgb, a[k], b[k], c[k]), env.rgb_scale);
-    let alpha = combined(env.combine_alpha, alphas(0), alphas(1), alphas(2));
-    [rgb(0), rgb(1), rgb(2), scaled(alpha, env.alpha_scale)]
+    let mut out = [alpha; 4];
+    for k in 0..3 {
+        out[k] = scaled(combined(env.combine_rgb, a[k], b[k], c[k]), env.rgb_scale);
+    }
+    out
+}
+
+#[inline(always)]
+fn scaled<R: Real>(v: R, scale: f32) -> R {
+    (v * v.like(scale)).clamped()
 }
 
 /// An argument of a combination.
@@ -122,12 +136,17 @@ fn operand<R: Real>(env: &TexEnv, s: &Sources<'_, R>, source: Enum, operand: Enu
         gl::PREVIOUS => s.previous,
         _ => {
             let unit = source.wrapping_sub(gl::TEXTURE0) as usize;
-            let found = s.texels.iter().find(|(k, _)| *k == unit);
-            found.map_or_else(|| constant(s.primary[0], [1.0; 4]), |(_, texel)| *texel)
+            let mut found = constant(s.primary[0], [1.0; 4]);
+            for (k, texel) in s.texels {
+                if *k == unit {
+                    found = *texel;
+                }
+            }
+            found
         }
     };
     match operand {
-        gl::ONE_MINUS_SRC_COLOR => [c[0].one_minus(), c[1].one_minus(), c[2].one_minus(), c[3].one_minus()],
+        gl::ONE_MINUS_SRC_COLOR => inverse(c),
         gl::SRC_ALPHA => [c[3]; 4],
         gl::ONE_MINUS_SRC_ALPHA => [c[3].one_minus(); 4],
         _ => c,

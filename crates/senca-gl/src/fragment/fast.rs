@@ -2,14 +2,14 @@
 //! face of a cube, colours of 8 bits or depths, without borders. The twin of [`super::sample`].
 
 use super::ops::Stencil;
-use super::real::{Color, constant, mixed};
-use super::sample::{LINEAR, Level, Sampled, face_of, on_face};
-use super::shade::{Coords, FogPlan};
+use super::real::{Color, Real, constant, mixed};
+use super::sample::{FACES, LINEAR, Level, Sampled, face_of};
+use super::shade::{FogPlan, Unit};
 use crate::gl;
 use crate::state::TexTarget;
 use crate::texture::Texels;
-use senca_raster::LANES;
 use senca_raster::simd::{Simd, f32x16, i32x16, mask8x16, mask32x16, prelude::*, u8x16, u32x16};
+use senca_raster::{Fragments, LANES};
 
 /// How coordinates outside [0, 1] are brought in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,41 +62,61 @@ impl FastTexture {
         Some(Self { wrap: [wrap(0)?, wrap(1)?], guarded: cube && t.seamless && mixes })
     }
 
-    /// The texture at the lanes in `mask`, as environments take it; `None` where it must be read one
-    /// fragment at a time.
+    /// The texel of a unit at the fragments of the mask, as environments take it; `None` where it must be
+    /// read one fragment at a time.
     #[inline(always)]
     pub(crate) fn sample<S: Simd>(
         &self,
         simd: S,
-        t: &Sampled,
-        coords: &Coords,
-        lods: &[f32; LANES],
-        mask: u16,
+        unit: &Unit,
+        f: &Fragments<'_>,
     ) -> Option<Color<f32x16<S>>> {
-        let (face, st) = self.place(t, coords, lods, mask)?;
-        let st = [f32x16::load_array_ref(simd, &st[0]), f32x16::load_array_ref(simd, &st[1])];
-        let reference = f32x16::load_array_ref(simd, &coords.reference);
-        let reference = reference.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
-        let mut result = constant(reference, [0.0; 4]);
-        let mut left = mask;
+        let t = &unit.texture;
+        let [s, v, r, q] = [
+            plane(simd, f, unit.coords),
+            plane(simd, f, unit.coords + 1),
+            plane(simd, f, unit.coords + 2),
+            plane(simd, f, unit.coords + 3),
+        ];
+        let (face, st, reference) = if t.target == TexTarget::Cube {
+            let (face, st) = on_cube(simd, f.mask, [s, v, r])?;
+            (face, st, r)
+        } else {
+            (0, [s / q, v / q], r / q)
+        };
+        let lods = quad_lods(t, f, st);
+        if self.guarded && !self.is_within(simd, t, f.mask, st, &lods) {
+            return None;
+        }
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        let reference = reference.max(zero).min(one);
+        let place = At { face, st, reference };
+        let mut result = [zero; 4];
+        let mut left = (0..4).filter(|k| f.mask & lanes_of(f.columns, *k) != 0).fold(0u32, |l, k| l | 1 << k);
         while left != 0 {
-            let first = left.trailing_zeros() as usize % LANES;
-            let chosen = t.levels_at(lods[first]);
+            // All squares of 2 x 2 fragments that read the same levels in the same way.
+            let chosen = t.levels_at(lods[left.trailing_zeros() as usize % 4]);
             let (linear, level, _) = chosen;
-            // All lanes that read the same levels in the same way.
-            let (mut lanes, mut shares) = (0, [0.0; LANES]);
-            for i in (0..LANES).filter(|i| left >> i & 1 == 1) {
-                let (l, n, share) = if lods[i] == lods[first] { chosen } else { t.levels_at(lods[i]) };
+            let (mut lanes, mut shares, mut two_levels) = (0, [0.0; LANES], false);
+            let waiting = left;
+            for k in (0..4).filter(|k| waiting >> k & 1 == 1) {
+                let (l, n, share) = t.levels_at(lods[k]);
                 if (l, n) == (linear, level) {
-                    lanes |= 1 << i;
-                    shares[i] = share;
+                    left &= !(1 << k);
+                    let here = lanes_of(f.columns, k);
+                    lanes |= here;
+                    two_levels |= share > 0.0;
+                    (0..LANES).filter(|i| here >> i & 1 == 1).for_each(|i| shares[i] = share);
                 }
             }
-            left &= !lanes;
-            let read = |level: usize| self.read(simd, t, level, face, st, reference, linear);
-            let mut value = read(level);
-            if shares.iter().any(|share| *share > 0.0) {
-                value = mixed(value, read(level + 1), f32x16::load_array_ref(simd, &shares));
+            let mut value = self.read(simd, t, level, &place, linear);
+            if two_levels {
+                let coarse = self.read(simd, t, level + 1, &place, linear);
+                value = mixed(value, coarse, f32x16::load_array_ref(simd, &shares));
+            }
+            if f.mask & !lanes == 0 {
+                result = value;
+                continue;
             }
             let here = mask32x16::from_bitmask(simd, u64::from(lanes));
             for k in 0..4 {
@@ -106,68 +126,92 @@ impl FastTexture {
         Some(as_taken(t, result))
     }
 
-    /// The face that all lanes read, and where; `None` if that is not one face.
-    fn place(
+    /// Whether all fragments of the mask are so far from the edges of a cube's face that texels of two
+    /// faces do not mix.
+    #[inline(always)]
+    fn is_within<S: Simd>(
         &self,
+        simd: S,
         t: &Sampled,
-        coords: &Coords,
-        lods: &[f32; LANES],
         mask: u16,
-    ) -> Option<(usize, [[f32; LANES]; 2])> {
-        if t.target != TexTarget::Cube {
-            return Some((0, [coords.at[0], coords.at[1]]));
-        }
-        let direction = |i: usize| [coords.at[0][i], coords.at[1][i], coords.at[2][i]];
-        let face = face_of(direction(mask.trailing_zeros() as usize % LANES));
-        let mut st = [[0.5; LANES]; 2];
-        let lanes = || (0..LANES).filter(|i| mask >> i & 1 == 1);
-        let mut rim = 0.0;
-        if self.guarded {
-            // Half a texel of the coarsest level read: beyond it texels of two faces mix.
-            let lod = lanes().map(|i| lods[i]).fold(f32::NEG_INFINITY, f32::max);
-            let coarsest = (t.levels_at(lod).1 + 1).min(t.levels.len() - 1);
-            rim = 0.5 / t.levels[coarsest].size[0] as f32;
-        }
-        for i in lanes() {
-            if face_of(direction(i)) != face {
-                return None;
-            }
-            let [s, v, _] = on_face(face, direction(i));
-            let within = |c: f32| c >= rim && c <= 1.0 - rim;
-            if self.guarded && !(within(s) && within(v)) {
-                return None;
-            }
-            (st[0][i], st[1][i]) = (s, v);
-        }
-        Some((face, st))
+        st: [f32x16<S>; 2],
+        lods: &[f32; 4],
+    ) -> bool {
+        // Half a texel of the coarsest level read.
+        let lod = lods.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let coarsest = (t.levels_at(lod).1 + 1).min(t.levels.len() - 1);
+        let rim = 0.5 / t.levels[coarsest].size[0] as f32;
+        let (low, high) = (f32x16::splat(simd, rim), f32x16::splat(simd, 1.0 - rim));
+        let within = st[0].simd_ge(low) & st[0].simd_le(high) & st[1].simd_ge(low) & st[1].simd_le(high);
+        mask & !(within.to_bitmask() as u16) == 0
     }
 
+    /// A function of its own in the compiled kernel, which is large enough.
     #[inline(always)]
     fn read<S: Simd>(
         &self,
         simd: S,
         t: &Sampled,
         level: usize,
-        face: usize,
-        st: [f32x16<S>; 2],
-        reference: f32x16<S>,
+        at: &At<S>,
+        linear: bool,
+    ) -> Color<f32x16<S>> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.read_inline(simd, t, level, at, linear),
+        )
+    }
+
+    #[inline(always)]
+    fn read_inline<S: Simd>(
+        &self,
+        simd: S,
+        t: &Sampled,
+        level: usize,
+        at: &At<S>,
         linear: bool,
     ) -> Color<f32x16<S>> {
         let level = &t.levels[level.min(t.levels.len() - 1)];
         let width = i32x16::splat(simd, level.size[0]);
-        let across = self.axis(simd, 0, st[0], level.size[0], linear);
-        let along = self.axis(simd, 1, st[1], level.size[1], linear);
-        let Some(texels) = level.texels.get(face) else { return constant(reference, [0.0; 4]) };
-        let rows = [along.low * width, along.high * width];
-        let at = |row: i32x16<S>, column: i32x16<S>| (row + column).to_array();
-        if !linear {
-            return texels_at(simd, t, texels, &at(rows[0], across.low), reference);
+        let across = self.axis(simd, 0, at.st[0], level.size[0], linear);
+        let along = self.axis(simd, 1, at.st[1], level.size[1], linear);
+        let nothing = constant(at.reference, [0.0; 4]);
+        let Some(texels) = level.texels.get(at.face) else { return nothing };
+        let (low, high) = (along.low * width, along.high * width);
+        // The numbers of the texels, the lower row first.
+        let mut numbers = [[0i32; LANES]; 4];
+        (low + across.low).store_array(&mut numbers[0]);
+        if linear {
+            (low + across.high).store_array(&mut numbers[1]);
+            (high + across.low).store_array(&mut numbers[2]);
+            (high + across.high).store_array(&mut numbers[3]);
         }
-        let corner =
-            |row: usize, column: i32x16<S>| texels_at(simd, t, texels, &at(rows[row], column), reference);
-        let low = mixed(corner(0, across.low), corner(0, across.high), across.share);
-        let high = mixed(corner(1, across.low), corner(1, across.high), across.share);
-        mixed(low, high, along.share)
+        let numbers = if linear { &numbers[..] } else { &numbers[..1] };
+        match &**texels {
+            Texels::Rgba8(colors) => {
+                let mut words = [[0u32; LANES]; 4];
+                gather_colors(colors, numbers, &mut words);
+                if !linear {
+                    return color_of(simd, t, &words[0]);
+                }
+                let below = mixed(color_of(simd, t, &words[0]), color_of(simd, t, &words[1]), across.share);
+                let above = mixed(color_of(simd, t, &words[2]), color_of(simd, t, &words[3]), across.share);
+                mixed(below, above, along.share)
+            }
+            Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. } => {
+                let mut values = [[0f32; LANES]; 4];
+                gather_depths(depths, numbers, &mut values);
+                let first = depth_of(simd, t, at.reference, &values[0]);
+                if !linear {
+                    return [first; 4];
+                }
+                let below = first.towards(depth_of(simd, t, at.reference, &values[1]), across.share);
+                let last = depth_of(simd, t, at.reference, &values[3]);
+                let above = depth_of(simd, t, at.reference, &values[2]).towards(last, across.share);
+                [below.towards(above, along.share); 4]
+            }
+            _ => nothing,
+        }
     }
 
     #[inline(always)]
@@ -209,33 +253,101 @@ struct Axis<S: Simd> {
     share: f32x16<S>,
 }
 
-/// Texels by number: colours, or in the first component depths, or the results of comparing them.
-#[inline(always)]
-fn texels_at<S: Simd>(
-    simd: S,
-    t: &Sampled,
-    texels: &Texels,
-    at: &[i32; LANES],
+/// Where fragments read a texture: face, s and t, and what depths are compared to.
+struct At<S: Simd> {
+    face: usize,
+    st: [f32x16<S>; 2],
     reference: f32x16<S>,
-) -> Color<f32x16<S>> {
-    match texels {
-        Texels::Rgba8(colors) => {
-            let mut words = [0u32; LANES];
-            for (word, &i) in words.iter_mut().zip(at) {
-                *word = u32::from_le_bytes(colors.get(i as u32 as usize).copied().unwrap_or_default());
-            }
-            if t.srgb { linear(simd, &words) } else { unpacked(u32x16::load_array_ref(simd, &words)) }
-        }
-        Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. } => {
-            let mut values = [0f32; LANES];
-            for (value, &i) in values.iter_mut().zip(at) {
-                *value = depths.get(i as u32 as usize).copied().unwrap_or_default();
-            }
-            let depth = f32x16::load_array_ref(simd, &values);
-            [compared(simd, t, reference, depth), depth, depth, depth]
-        }
-        _ => constant(reference, [0.0; 4]),
+}
+
+/// Varying `k` of the fragments; 0 if there is none.
+#[inline(always)]
+pub(crate) fn plane<S: Simd>(simd: S, f: &Fragments<'_>, k: usize) -> f32x16<S> {
+    match f.varyings.get(k) {
+        Some(plane) => f32x16::load_array_ref(simd, plane),
+        None => f32x16::splat(simd, 0.0),
     }
+}
+
+/// The lanes of square `k` of 2 x 2 fragments; see [`Fragments::quads`].
+#[inline(always)]
+fn lanes_of(columns: u32, k: usize) -> u16 {
+    if columns == 8 { 0x0303 << (2 * k) } else { 0x33 << (8 * (k / 2) + 2 * (k % 2)) }
+}
+
+/// Levels of detail of the squares of 2 x 2 fragments that are in the mask; see [`Unit::lods`].
+#[inline(always)]
+fn quad_lods<S: Simd>(t: &Sampled, f: &Fragments<'_>, st: [f32x16<S>; 2]) -> [f32; 4] {
+    let mut lods = [0.0; 4];
+    if !t.needs_lod() {
+        return lods;
+    }
+    let [s, v] = [st[0].to_array(), st[1].to_array()];
+    for (k, lod) in lods.iter_mut().enumerate() {
+        let lanes = lanes_of(f.columns, k);
+        let first = lanes.trailing_zeros() as usize % LANES;
+        let [right, below] = [(first + 1) % LANES, (first + f.columns as usize) % LANES];
+        if f.mask & lanes != 0 {
+            let x = [s[right] - s[first], v[right] - v[first], 0.0];
+            let y = [s[below] - s[first], v[below] - v[first], 0.0];
+            *lod = t.lod([x, y]);
+        }
+    }
+    lods
+}
+
+/// The face of a cube that all lanes of the mask meet, and where; `None` if that is not one face.
+#[inline(always)]
+fn on_cube<S: Simd>(simd: S, mask: u16, direction: [f32x16<S>; 3]) -> Option<(usize, [f32x16<S>; 2])> {
+    let first = mask.trailing_zeros() as usize % LANES;
+    let face = face_of([direction[0][first], direction[1][first], direction[2][first]]);
+    let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+    let x = (size[0].simd_ge(size[1]) & size[0].simd_ge(size[2])).to_bitmask() as u16;
+    let y = size[1].simd_ge(size[2]).to_bitmask() as u16 & !x;
+    let major = [x, y, !(x | y)][face / 2];
+    let negative = direction[face / 2].simd_lt(f32x16::splat(simd, 0.0)).to_bitmask() as u16;
+    let same = major & if face % 2 == 1 { negative } else { !negative };
+    if mask & !same != 0 {
+        return None;
+    }
+    let [(i, major), (j, across), (k, along)] = FACES[face];
+    let scale = f32x16::splat(simd, 0.5) / (f32x16::splat(simd, major) * direction[i]);
+    let half = f32x16::splat(simd, 0.5);
+    Some((
+        face,
+        [
+            f32x16::splat(simd, across) * direction[j] * scale + half,
+            f32x16::splat(simd, along) * direction[k] * scale + half,
+        ],
+    ))
+}
+
+// Through memory on purpose: inlined into vector code, every number would be taken out of its register and
+// every texel put into one, lane by lane.
+
+#[inline(never)]
+fn gather_colors(colors: &[[u8; 4]], numbers: &[[i32; LANES]], out: &mut [[u32; LANES]; 4]) {
+    for (to, &i) in out.as_flattened_mut().iter_mut().zip(numbers.as_flattened()) {
+        *to = u32::from_le_bytes(colors.get(i as u32 as usize).copied().unwrap_or_default());
+    }
+}
+
+#[inline(never)]
+fn gather_depths(depths: &[f32], numbers: &[[i32; LANES]], out: &mut [[f32; LANES]; 4]) {
+    for (to, &i) in out.as_flattened_mut().iter_mut().zip(numbers.as_flattened()) {
+        *to = depths.get(i as u32 as usize).copied().unwrap_or_default();
+    }
+}
+
+#[inline(always)]
+fn color_of<S: Simd>(simd: S, t: &Sampled, words: &[u32; LANES]) -> Color<f32x16<S>> {
+    if t.srgb { linear(simd, words) } else { unpacked(u32x16::load_array_ref(simd, words)) }
+}
+
+/// Depths, or the results of comparing them.
+#[inline(always)]
+fn depth_of<S: Simd>(simd: S, t: &Sampled, reference: f32x16<S>, depths: &[f32; LANES]) -> f32x16<S> {
+    compared(simd, t, reference, f32x16::load_array_ref(simd, depths))
 }
 
 #[inline(always)]

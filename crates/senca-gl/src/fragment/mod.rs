@@ -26,7 +26,7 @@ use crate::state::Cap;
 use crate::vertex::Layout;
 use crate::{Enum, gl};
 use env::Sources;
-use fast::{FastTexture, compares_lanes, packed, unpacked};
+use fast::{FastTexture, compares_lanes, packed, plane, unpacked};
 use ops::{ColorWrite, Stencil, compares, logic};
 use real::{Color, clamped, constant};
 use senca_raster::simd::{Simd, dispatch, f32x16, mask32x16, prelude::*, u32x16};
@@ -244,11 +244,36 @@ impl Program {
 
     #[inline(always)]
     fn colored<S: Simd>(&self, simd: S, f: &Fragments<'_>) -> Color<f32x16<S>> {
-        let varying = |k: usize| match f.varyings.get(k) {
-            Some(plane) => f32x16::load_array_ref(simd, plane),
-            None => f32x16::splat(simd, 0.0),
-        };
-        let primary = clamped([varying(0), varying(1), varying(2), varying(3)]);
+        let varying = [plane(simd, f, 0), plane(simd, f, 1), plane(simd, f, 2), plane(simd, f, 3)];
+        let primary = clamped(varying);
+        let mut color = primary;
+        if let ([unit], [fast]) = (&self.shader.units[..], &self.fast[..]) {
+            let texel = texel_lanes(simd, unit, fast.as_ref(), f);
+            let texels = [(unit.number, texel)];
+            let s = Sources { primary, previous: primary, texel, texels: &texels };
+            color = env::apply(&unit.env, unit.texture.base, &s);
+        } else if !self.shader.units.is_empty() {
+            color = simd.vectorize(
+                #[inline(always)]
+                || self.textured(simd, f, primary),
+            );
+        }
+        if let Some(first) = self.shader.secondary {
+            let (r, g, b) = (plane(simd, f, first), plane(simd, f, first + 1), plane(simd, f, first + 2));
+            let second = clamped([r, g, b, primary[3]]);
+            let [r, g, b, _] =
+                clamped([color[0] + second[0], color[1] + second[1], color[2] + second[2], color[3]]);
+            color = [r, g, b, color[3]];
+        }
+        if let Some(fog) = &self.shader.fog {
+            color = fog.mixed(color, fast::fog_factor(simd, fog, plane(simd, f, fog.coord), f.mask));
+        }
+        color
+    }
+
+    /// The colour after several units.
+    #[inline(always)]
+    fn textured<S: Simd>(&self, simd: S, f: &Fragments<'_>, primary: Color<f32x16<S>>) -> Color<f32x16<S>> {
         let mut color = primary;
         let units = &self.shader.units;
         let mut texels = [(0, primary); crate::state::TEXTURE_UNITS];
@@ -259,15 +284,6 @@ impl Program {
         for (unit, (_, texel)) in units.iter().zip(&texels) {
             let s = Sources { primary, previous: color, texel: *texel, texels: &texels[..count] };
             color = env::apply(&unit.env, unit.texture.base, &s);
-        }
-        if let Some(first) = self.shader.secondary {
-            let second = clamped([varying(first), varying(first + 1), varying(first + 2), primary[3]]);
-            let [r, g, b, _] =
-                clamped([color[0] + second[0], color[1] + second[1], color[2] + second[2], color[3]]);
-            color = [r, g, b, color[3]];
-        }
-        if let Some(fog) = &self.shader.fog {
-            color = fog.mixed(color, fast::fog_factor(simd, fog, varying(fog.coord), f.mask));
         }
         color
     }
@@ -339,26 +355,32 @@ fn texel_lanes<S: Simd>(
     fast: Option<&FastTexture>,
     f: &Fragments<'_>,
 ) -> Color<f32x16<S>> {
-    let coords = unit.coords(f);
-    let lods = unit.lods(f, &coords);
     if let Some(fast) = fast
-        && let Some(texel) = fast.sample(simd, &unit.texture, &coords, &lods, f.mask)
+        && let Some(texel) = fast.sample(simd, unit, f)
     {
         return texel;
     }
-    let mut planes = [[0.0; LANES]; 4];
-    for i in f.lanes() {
-        let at = [coords.at[0][i], coords.at[1][i], coords.at[2][i]];
-        let texel = unit.texture.sample(at, coords.reference[i], lods[i]);
-        (0..4).for_each(|k| planes[k][i] = texel[k]);
-    }
-    let [r, g, b, a] = &planes;
+    let [r, g, b, a] = &texel_planes(unit, f);
     [
         f32x16::load_array_ref(simd, r),
         f32x16::load_array_ref(simd, g),
         f32x16::load_array_ref(simd, b),
         f32x16::load_array_ref(simd, a),
     ]
+}
+
+/// The texels of a unit, one fragment at a time.
+#[inline(never)]
+fn texel_planes(unit: &Unit, f: &Fragments<'_>) -> [[f32; LANES]; 4] {
+    let coords = unit.coords(f);
+    let lods = unit.lods(f, &coords);
+    let mut planes = [[0.0; LANES]; 4];
+    for i in f.lanes() {
+        let at = [coords.at[0][i], coords.at[1][i], coords.at[2][i]];
+        let texel = unit.texture.sample(at, coords.reference[i], lods[i]);
+        (0..4).for_each(|k| planes[k][i] = texel[k]);
+    }
+    planes
 }
 
 impl FragmentStage for Program {

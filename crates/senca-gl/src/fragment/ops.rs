@@ -115,7 +115,6 @@ impl Blending {
 
     #[inline(always)]
     fn factor<R: Real>(&self, factor: Enum, new: Color<R>, old: Color<R>) -> Color<R> {
-        let inverse = |c: Color<R>| [c[0].one_minus(), c[1].one_minus(), c[2].one_minus(), c[3].one_minus()];
         match factor {
             gl::ZERO => [new[0].like(0.0); 4],
             gl::SRC_COLOR => new,
@@ -137,6 +136,12 @@ impl Blending {
             _ => [new[0].like(1.0); 4],
         }
     }
+}
+
+/// 1 minus each component.
+#[inline(always)]
+pub(crate) fn inverse<R: Real>(c: Color<R>) -> Color<R> {
+    [c[0].one_minus(), c[1].one_minus(), c[2].one_minus(), c[3].one_minus()]
 }
 
 #[inline(always)]

@@ -293,7 +293,7 @@ fn mirrored(s: f32) -> f32 {
 }
 
 /// Axes of the faces of a cube: the major axis, and which of x, y, z are s and t, each with its sign.
-const FACES: [[(usize, f32); 3]; 6] = [
+pub(crate) const FACES: [[(usize, f32); 3]; 6] = [
     [(0, 1.0), (2, -1.0), (1, -1.0)],
     [(0, -1.0), (2, 1.0), (1, -1.0)],
     [(1, 1.0), (0, 1.0), (2, 1.0)],

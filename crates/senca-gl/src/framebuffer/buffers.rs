@@ -25,6 +25,7 @@ impl Context {
     }
 
     /// The window's colours, the lowest row first, of the front buffer, or the only one. Empty if they are floats.
+    /// What waits to be drawn, and a clear before it, is there after [`finish`](Self::finish).
     #[must_use]
     pub fn window_pixels(&self) -> &[[u8; 4]] {
         match self.framebuffers.window.front().map(|texels| &**texels) {

@@ -1,9 +1,24 @@
 //! Clearing and accumulating.
 
+use super::draw::DrawPlanes;
 use super::fill::{fill_color, fill_depth, fill_stencil};
 use super::plane::Area;
 use crate::state::Cap;
+use crate::texture::Texels;
 use crate::{Context, Enum, Error, gl};
+use senca_raster::Clear;
+
+/// A clear of all pixels, which waits for what is drawn after it: the rasterizer clears tile by tile as it
+/// goes, which saves going through the memory once more. Whoever looks at the buffers does it before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WaitingClear {
+    /// What is cleared, and to which values.
+    pub(crate) values: Clear,
+    /// Width and height of what is drawn to.
+    pub(crate) size: [u32; 2],
+    /// Samples of what is drawn to.
+    pub(crate) samples: u32,
+}
 
 /// The buffers that `glClear` takes.
 const CLEARABLE: Enum =
@@ -52,7 +67,21 @@ impl Context {
     }
 
     fn clear_buffers(&mut self, mask: Enum) {
+        if self.batch.indices.is_empty() && self.waiting_clear.is_some() {
+            // A clear of one buffer after that of another: both wait.
+            if let (Some(new), Some(old)) = (self.whole_clear(mask), self.waiting_clear.as_mut()) {
+                let (to, from) = (&mut old.values, new.values);
+                to.color = from.color.or(to.color);
+                to.depth = from.depth.or(to.depth);
+                to.stencil = from.stencil.or(to.stencil);
+                return;
+            }
+        }
         self.settle_planes();
+        if let Some(clear) = self.whole_clear(mask) {
+            self.waiting_clear = Some(clear);
+            return;
+        }
         let mut planes = self.framebuffers.take_planes();
         let area = self.scissored(planes.area());
         let state = &self.state;
@@ -75,6 +104,62 @@ impl Context {
                 accumulation.clear(area, value);
             }
         }
+    }
+
+    /// What a clear sets, if it sets all of the pixels of planes that the rasterizer can clear as it draws.
+    fn whole_clear(&mut self, mask: Enum) -> Option<WaitingClear> {
+        if mask & gl::ACCUM_BUFFER_BIT != 0 {
+            return None;
+        }
+        let mut planes = self.framebuffers.take_planes();
+        let clear = self.whole_clear_of(&mut planes, mask);
+        self.framebuffers.put_back(planes);
+        clear
+    }
+
+    fn whole_clear_of(&self, planes: &mut DrawPlanes, mask: Enum) -> Option<WaitingClear> {
+        let (s, area) = (&self.state, planes.area());
+        if area.is_empty() || self.scissored(area) != area || !planes.are_alike() || planes.color_count() > 1
+        {
+            return None;
+        }
+        let mut values = Clear { color: None, depth: None, id: None, stencil: None };
+        if let Some(plane) = planes.colors_mut().next().filter(|_| mask & gl::COLOR_BUFFER_BIT != 0) {
+            let fits = matches!(*plane.texels, Texels::Rgba8(_) | Texels::Rgba32F(_));
+            if !fits || s.color.mask != [true; 4] {
+                return None;
+            }
+            let color = s.color.clear_color.map(|c| c.clamp(0.0, 1.0));
+            values.color = Some(plane.format.base().stored(color, 1.0));
+        }
+        if planes.depth().is_some() && mask & gl::DEPTH_BUFFER_BIT != 0 && s.depth.mask {
+            values.depth = Some(s.depth.clear as f32);
+        }
+        if planes.stencil().is_some() && mask & gl::STENCIL_BUFFER_BIT != 0 {
+            if s.stencil.write_mask as u8 != u8::MAX {
+                return None;
+            }
+            values.stencil = Some(s.stencil.clear as u8);
+        }
+        let size = [planes.width, planes.height];
+        Some(WaitingClear { values, size, samples: planes.samples })
+    }
+
+    /// Does the clear that waits.
+    pub(crate) fn settle_clear(&mut self) {
+        let Some(WaitingClear { values, .. }) = self.waiting_clear.take() else { return };
+        let mut planes = self.framebuffers.take_planes();
+        let area = planes.area();
+        if let Some(color) = values.color {
+            planes.colors_mut().for_each(|plane| fill_color(plane, area, color, [true; 4]));
+        }
+        if let (Some(plane), Some(depth)) = (planes.depth(), values.depth) {
+            fill_depth(plane, area, depth);
+        }
+        if let (Some(plane), Some(stencil)) = (planes.stencil(), values.stencil) {
+            fill_stencil(plane, area, stencil, u8::MAX);
+        }
+        self.framebuffers.put_back(planes);
     }
 
     fn window_area(&self) -> Area {

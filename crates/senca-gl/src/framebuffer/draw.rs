@@ -1,5 +1,6 @@
 //! The planes that are drawn to, in the hands of who draws.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use senca_raster::{ColorPlane, Target};
@@ -46,6 +47,14 @@ pub(crate) struct DrawPlanes {
 impl Framebuffers {
     /// Takes the planes that are drawn to. The framebuffer should be complete; what is not there is left out.
     pub(crate) fn take_planes(&mut self) -> DrawPlanes {
+        self.take_planes_for(0..u32::MAX)
+    }
+
+    /// As [`take_planes`](Self::take_planes), for who changes pixels in some rows only.
+    pub(crate) fn take_planes_for(&mut self, rows: Range<u32>) -> DrawPlanes {
+        if self.draw_object().is_none() {
+            self.window.note_changed(rows);
+        }
         let (colors, depth, stencil) = match self.draw_object() {
             Some(object) => {
                 let home = |attachment: &Attachment| {
@@ -126,6 +135,12 @@ impl DrawPlanes {
     #[cfg(test)]
     pub(crate) fn color(&mut self, i: usize) -> &mut Plane {
         &mut self.colors[i].plane
+    }
+
+    /// Whether all planes are of one size and one number of samples.
+    pub(crate) fn are_alike(&self) -> bool {
+        let size = (self.width, self.height, self.samples);
+        self.all().all(|plane| plane.is_present() && (plane.width, plane.height, plane.samples) == size)
     }
 
     /// All colour planes.

@@ -26,6 +26,7 @@ mod window;
 mod tests;
 
 pub(crate) use blit::Aspect;
+pub(crate) use clear::WaitingClear;
 pub(crate) use object::{Framebuffers, MAX_COLOR_ATTACHMENTS, Renderbuffers, SavedBuffers};
 pub(crate) use plane::{Area, Plane, SAMPLES};
 pub(crate) use window::Window;

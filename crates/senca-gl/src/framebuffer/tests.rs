@@ -86,7 +86,37 @@ fn clear_obeys_scissor_and_masks() {
 fn large_clears_reach_every_pixel() {
     let mut c = context(701, 301);
     clear_red(&mut c, 1.0);
+    c.finish();
     assert!(c.window_pixels().iter().all(|color| *color == [255, 0, 0, 255]));
+}
+
+/// The same commands, with a look at the buffers between clear and triangle or without.
+#[test]
+fn a_clear_waits_for_what_is_drawn() {
+    let picture = |looks: bool, scissor: Option<[i32; 4]>| {
+        let mut c = context(150, 90);
+        clear_red(&mut c, 0.5);
+        c.clear_depth(0.75);
+        c.clear_stencil(9);
+        c.clear(gl::DEPTH_BUFFER_BIT | gl::STENCIL_BUFFER_BIT);
+        if looks {
+            c.finish();
+        }
+        c.enable(gl::DEPTH_TEST);
+        if let Some([x, y, width, height]) = scissor {
+            c.enable(gl::SCISSOR_TEST);
+            c.scissor(x, y, width, height);
+        }
+        c.begin(gl::TRIANGLES);
+        c.color([0.0f32, 1.0, 0.0]);
+        [[-0.9f32, -0.8, 0.9], [0.5, -0.7, 0.0], [0.1, 0.6, -0.5]].into_iter().for_each(|v| c.vertex(v));
+        c.end();
+        let colors = rgba(&mut c, [0, 0], [150, 90]);
+        (colors, depths(&mut c, [150, 90]), stencils(&mut c, [150, 90]))
+    };
+    for scissor in [None, Some([-5, 0, 500, 500]), Some([10, 10, 60, 60])] {
+        assert!(picture(false, scissor) == picture(true, scissor), "{scissor:?}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::accum::Accumulation;
 use super::plane::Plane;
 use crate::texture::{InternalFormat, Texels};
 use crate::{Config, gl};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The window's buffers: a front and perhaps a back colour buffer, depth and stencil as configured.
@@ -16,11 +17,19 @@ pub(crate) struct Window {
     /// Depths, stencil values, or both.
     pub(crate) depth_stencil: Option<Plane>,
     pub(crate) accumulation: Option<Accumulation>,
+    /// Rows in which pixels may have changed since somebody asked.
+    changed: Range<u32>,
 }
 
 impl Window {
-    pub(crate) const NONE: Self =
-        Self { width: 0, height: 0, colors: Vec::new(), depth_stencil: None, accumulation: None };
+    pub(crate) const NONE: Self = Self {
+        width: 0,
+        height: 0,
+        colors: Vec::new(),
+        depth_stencil: None,
+        accumulation: None,
+        changed: 0..0,
+    };
 
     /// Buffers of a size, black, with depth 1; `None` if memory does not suffice.
     pub(crate) fn new(config: Config, width: u32, height: u32) -> Option<Self> {
@@ -45,14 +54,29 @@ impl Window {
             0 => None,
             _ => Some(Accumulation::new(width, height)?),
         };
-        Some(Self { width, height, colors, depth_stencil, accumulation })
+        Some(Self { width, height, colors, depth_stencil, accumulation, changed: 0..height })
     }
 
     /// Exchanges front and back buffer, if there are two.
     pub(crate) fn swap(&mut self) {
         if let [front, back] = &mut self.colors[..] {
             std::mem::swap(front, back);
+            self.changed = 0..self.height;
         }
+    }
+
+    /// Says that pixels of some rows may change.
+    pub(crate) fn note_changed(&mut self, rows: Range<u32>) {
+        let (start, end) = (rows.start.min(self.height), rows.end.min(self.height));
+        if start < end {
+            let all = if self.changed.is_empty() { start..end } else { self.changed.clone() };
+            self.changed = all.start.min(start)..all.end.max(end);
+        }
+    }
+
+    /// Rows in which pixels may have changed since this was last asked.
+    pub(crate) fn take_changed(&mut self) -> Range<u32> {
+        std::mem::replace(&mut self.changed, 0..0)
     }
 
     /// The colour buffer that the window shows.

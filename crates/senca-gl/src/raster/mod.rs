@@ -3,13 +3,14 @@
 mod shading;
 
 use crate::fragment::Program;
+use crate::framebuffer::WaitingClear;
 use crate::raster_state::{Batch, Kind, RasterState};
 use crate::state::Cap;
 use crate::{Context, Enum, gl};
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Compare, Counters, Cull, DepthBias, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading, State,
-    StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
+    Clear, Compare, Counters, Cull, DepthBias, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading,
+    State, StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
 use shading::{simple_shading, simple_texture};
 
@@ -19,23 +20,76 @@ const DEPTH_UNIT: f32 = 1.0 / (1 << 23) as f32;
 impl Context {
     /// Draws a batch; returns how many samples passed.
     pub(crate) fn draw_batch(&mut self, batch: &Batch) -> u64 {
-        let mut planes = self.framebuffers.take_planes();
+        let clear = self.waiting_clear.filter(|clear| clears_along(clear, batch)).map(|clear| clear.values);
+        match clear {
+            Some(_) => self.waiting_clear = None,
+            None => self.settle_clear(),
+        }
+        let rows = if clear.is_some() { 0..u32::MAX } else { rows_of(batch) };
+        let mut planes = self.framebuffers.take_planes_for(rows);
         let (rasterizer, multisample) = (&mut self.rasterizer, batch.state.has(Cap::Multisample));
-        let passed =
-            planes.draw(multisample, |mut target, side| draw(rasterizer, &mut target, batch, side).passed);
+        let passed = planes
+            .draw(multisample, |mut target, side| draw(rasterizer, &mut target, batch, side, clear).passed);
         self.framebuffers.put_back(planes);
         passed
     }
 }
 
+/// Vertices up to which it is worth while to find out where they are.
+const FEW_VERTICES: usize = 64;
+
+/// Whether the rasterizer can do a clear when it draws a batch.
+fn clears_along(clear: &WaitingClear, batch: &Batch) -> bool {
+    let s = &batch.state;
+    let all_culled = s.has(Cap::CullFace) && s.polygon.cull_face == gl::FRONT_AND_BACK;
+    batch.kind == Kind::Triangles
+        && !all_culled
+        && !s.has(Cap::PolygonSmooth)
+        && (!s.has(Cap::ScissorTest) || covers(rect(s.scissor), clear.size))
+        && (clear.samples == 0 || s.has(Cap::Multisample))
+}
+
+/// Whether a rectangle covers all pixels of a target.
+fn covers(r: Rect, [width, height]: [u32; 2]) -> bool {
+    let end = |start: i32, size: u32| i64::from(start) + i64::from(size);
+    r.x <= 0 && r.y <= 0 && end(r.x, r.width) >= i64::from(width) && end(r.y, r.height) >= i64::from(height)
+}
+
+/// The rows a batch has pixels in, or more.
+fn rows_of(batch: &Batch) -> std::ops::Range<u32> {
+    let all = 0..u32::MAX;
+    if batch.positions.len() > FEW_VERTICES || !batch.sizes.is_empty() {
+        return all;
+    }
+    let [_, y, _, height] = batch.state.viewport.rect.map(|v| v as f32);
+    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    for p in &batch.positions {
+        let row = y + 0.5 * height - 0.5 * height * p.y / p.w;
+        // Behind the eye, or nearly.
+        if p.w < 1e-6 || !row.is_finite() {
+            return all;
+        }
+        (low, high) = (low.min(row), high.max(row));
+    }
+    let rim = batch.state.line.width.max(batch.state.point.size).max(1.0) + 2.0;
+    (low - rim).max(0.0) as u32..(high + rim).max(0.0) as u32
+}
+
 /// Draws a batch into a target that has a square of `side` samples along each side of a pixel.
-fn draw(rasterizer: &mut TiledRasterizer, target: &mut Target<'_>, batch: &Batch, side: u32) -> Counters {
+fn draw(
+    rasterizer: &mut TiledRasterizer,
+    target: &mut Target<'_>,
+    batch: &Batch,
+    side: u32,
+    clear: Option<Clear>,
+) -> Counters {
     let s = &batch.state;
     let both_culled = s.has(Cap::CullFace) && s.polygon.cull_face == gl::FRONT_AND_BACK;
     if both_culled && batch.kind == Kind::Triangles {
         return Counters::default();
     }
-    let mut state = in_samples(raster_state(batch), side);
+    let mut state = State { clear, ..in_samples(raster_state(batch), side) };
+    state.scissor = state.scissor.filter(|scissor| !covers(*scissor, [target.width(), target.height()]));
     let stride = usize::from(batch.layout.stride);
     let sized = with_sizes(batch, stride);
     let (varyings, stride) = match &sized {
