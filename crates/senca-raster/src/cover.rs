@@ -400,6 +400,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         if bits == 0 {
             return;
         }
+        self.buffer.written |= 1 << (block & 63);
         let keep = if self.pass.stage.is_some() {
             self.counts.shaded += u64::from(bits.count_ones());
             let passed = self.staged(simd, place, row, fx, z, bits);
@@ -511,23 +512,22 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             }
         }
         let fragments = self.fragments(place, mask, z.to_array(), &values[..count]);
-        let passed = self.run_stage(stage, fragments, place);
+        let passed = self.run_stage(stage, &fragments, place);
         self.batch.interpolated = values;
         passed
     }
 
     /// Has the stage colour and merge fragments; returns those that passed.
     #[inline(always)]
-    fn run_stage(&mut self, stage: &dyn FragmentStage, mut fragments: Fragments<'_>, place: Place) -> u16 {
-        let mut shaded = Shaded::default();
-        if self.pass.needs.shades {
-            stage.shade(&fragments, &mut shaded);
-        }
-        fragments.mask &= shaded.keep;
-        if fragments.mask == 0 {
-            return 0;
-        }
-        stage.merge(&fragments, &shaded, &mut self.pixels(place)) & fragments.mask
+    fn run_stage(&mut self, stage: &dyn FragmentStage, fragments: &Fragments<'_>, place: Place) -> u16 {
+        let shades = self.pass.needs.shades;
+        let mut pixels = self.pixels(place);
+        let passed = if shades {
+            stage.shade_and_merge(fragments, &mut pixels)
+        } else {
+            stage.merge(fragments, &Shaded::default(), &mut pixels)
+        };
+        passed & fragments.mask
     }
 
     /// The pixels of a vector, for the stage.

@@ -30,8 +30,8 @@ use std::ops::Range;
 /// Widest line and largest point, in pixels.
 const MAX_SIZE: f32 = 4096.0;
 
-/// Primitives made ready at once, which bounds the memory for them.
-const RUN: usize = 1 << 16;
+/// Primitives made ready at once: so few that they stay in the processor's cache while strip after strip is drawn.
+const RUN: usize = 1 << 13;
 
 /// Fewer primitives than this are not worth a second thread.
 const WORTH_SHARING: usize = 128;

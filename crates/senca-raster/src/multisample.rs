@@ -70,6 +70,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
         let any = masks.iter().fold(0, |any, mask| any | mask);
         if any != 0 {
+            self.buffer.written |= 1 << block;
             self.shade_samples(simd, Place { lane, block, pair: 0 }, any, &masks, &depths);
         }
     }

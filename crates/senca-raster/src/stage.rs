@@ -54,6 +54,15 @@ pub trait FragmentStage: Sync {
     /// Merges the lanes in `fragments.mask`, coloured as in `shaded`, into their pixels, and returns
     /// those of them that have passed all tests. Pixels of other lanes must be left as they are.
     fn merge(&self, fragments: &Fragments<'_>, shaded: &Shaded, pixels: &mut Pixels<'_>) -> u16;
+
+    /// [`FragmentStage::shade`] and then [`FragmentStage::merge`], which a stage may do in one go where pixels
+    /// have one sample.
+    fn shade_and_merge(&self, fragments: &Fragments<'_>, pixels: &mut Pixels<'_>) -> u16 {
+        let mut shaded = Shaded::default();
+        self.shade(fragments, &mut shaded);
+        let kept = Fragments { mask: fragments.mask & shaded.keep, ..*fragments };
+        if kept.mask == 0 { 0 } else { self.merge(&kept, &shaded, pixels) & kept.mask }
+    }
 }
 
 /// Sixteen pixels of a target, in the lanes of [`Fragments`].

@@ -130,6 +130,8 @@ pub(crate) struct TileBuffer {
     pub(crate) farthest: [f32; BLOCKS * BLOCKS],
     /// Blocks that have been brought in, bit by bit.
     pub(crate) present: u64,
+    /// Those of them in which something may have been written.
+    pub(crate) written: u64,
 }
 
 impl Default for TileBuffer {
@@ -142,6 +144,7 @@ impl Default for TileBuffer {
             ids: block_plane(0),
             farthest: [f32::INFINITY; BLOCKS * BLOCKS],
             present: 0,
+            written: 0,
         }
     }
 }
@@ -174,7 +177,11 @@ impl TileBuffer {
                 Some(depth) => fill(&mut self.depth[block], depth),
                 None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
             }
-            self.farthest[block] = farthest_of(&self.depth[block], touches.reversed);
+            self.farthest[block] = match clear.and_then(|c| c.depth) {
+                Some(depth) if touches.reversed => -depth,
+                Some(depth) => depth,
+                None => farthest_of(&self.depth[block], touches.reversed),
+            };
         }
         if let Some(plane) = &band.stencil {
             match clear.and_then(|c| c.stencil) {
@@ -263,11 +270,12 @@ impl TileBuffer {
         }
     }
 
-    /// Takes the tile back to the target. With `clear`, blocks that were never touched are cleared.
+    /// Takes the blocks that have been written back to the target. With `clear`, the others are cleared.
     pub(crate) fn store(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
         let clear = touches.clear;
         let (width, height) = (band.width, band.height);
-        let present = std::mem::take(&mut self.present);
+        self.present = 0;
+        let present = std::mem::take(&mut self.written);
         if present == 0 && clear.is_none() {
             return;
         }

@@ -225,6 +225,16 @@ impl Program {
 
     #[inline(always)]
     fn shade_fast<S: Simd>(&self, simd: S, f: &Fragments<'_>, out: &mut Shaded) {
+        let (color, kept) = self.shaded(simd, f);
+        out.keep &= kept;
+        for (plane, value) in out.rgba.iter_mut().zip(color) {
+            value.store_array(plane);
+        }
+    }
+
+    /// Colours of fragments, and the lanes that the alpha test leaves.
+    #[inline(always)]
+    fn shaded<S: Simd>(&self, simd: S, f: &Fragments<'_>) -> (Color<f32x16<S>>, u16) {
         let mut color = if self.needs_color {
             self.colored(simd, f)
         } else {
@@ -233,13 +243,17 @@ impl Program {
         if let Some(coverage) = f.coverage {
             color[3] *= f32x16::load_array_ref(simd, coverage);
         }
-        if let Some((func, reference)) = self.alpha {
-            let kept = compares_lanes(simd, func, color[3], f32x16::splat(simd, reference));
-            out.keep &= kept.to_bitmask() as u16;
-        }
-        for (plane, value) in out.rgba.iter_mut().zip(color) {
-            value.store_array(plane);
-        }
+        let Some((func, reference)) = self.alpha else { return (color, u16::MAX) };
+        let kept = compares_lanes(simd, func, color[3], f32x16::splat(simd, reference));
+        (color, kept.to_bitmask() as u16)
+    }
+
+    /// Shades and merges at once.
+    #[inline(always)]
+    fn run_fast<S: Simd>(&self, simd: S, f: &Fragments<'_>, pixels: &mut Pixels<'_>) -> u16 {
+        let (color, kept) = self.shaded(simd, f);
+        let f = Fragments { mask: f.mask & kept, ..*f };
+        if f.mask == 0 { 0 } else { self.merge_fast(simd, &f, color, pixels) }
     }
 
     #[inline(always)]
@@ -293,7 +307,7 @@ impl Program {
         &self,
         simd: S,
         f: &Fragments<'_>,
-        shaded: &Shaded,
+        new: Color<f32x16<S>>,
         pixels: &mut Pixels<'_>,
     ) -> u16 {
         let mut passed = f.mask;
@@ -306,13 +320,6 @@ impl Program {
             return passed;
         }
         let keep = mask32x16::from_bitmask(simd, u64::from(passed));
-        let [r, g, b, a] = &shaded.rgba;
-        let new = [
-            f32x16::load_array_ref(simd, r),
-            f32x16::load_array_ref(simd, g),
-            f32x16::load_array_ref(simd, b),
-            f32x16::load_array_ref(simd, a),
-        ];
         match &mut pixels.color {
             PixelColors::None => {}
             PixelColors::Rgba8(plane) => {
@@ -361,6 +368,18 @@ fn texel_lanes<S: Simd>(
         return texel;
     }
     let [r, g, b, a] = &texel_planes(unit, f);
+    [
+        f32x16::load_array_ref(simd, r),
+        f32x16::load_array_ref(simd, g),
+        f32x16::load_array_ref(simd, b),
+        f32x16::load_array_ref(simd, a),
+    ]
+}
+
+/// Colours out of memory.
+#[inline(always)]
+fn loaded<S: Simd>(simd: S, shaded: &Shaded) -> Color<f32x16<S>> {
+    let [r, g, b, a] = &shaded.rgba;
     [
         f32x16::load_array_ref(simd, r),
         f32x16::load_array_ref(simd, g),
@@ -431,7 +450,21 @@ impl FragmentStage for Program {
         if self.plain {
             return self.merge_plain(fragments, shaded, pixels);
         }
-        dispatch!(self.level, simd => self.merge_fast(simd, fragments, shaded, pixels))
+        dispatch!(self.level, simd => self.merge_fast(simd, fragments, loaded(simd, shaded), pixels))
+    }
+
+    fn shade_and_merge(&self, fragments: &Fragments<'_>, pixels: &mut Pixels<'_>) -> u16 {
+        if self.plain || self.samples.is_some() {
+            let mut shaded = Shaded::default();
+            self.shade(fragments, &mut shaded);
+            let f = Fragments { mask: fragments.mask & shaded.keep, ..*fragments };
+            return if f.mask == 0 { 0 } else { self.merge(&f, &shaded, pixels) };
+        }
+        let f = Fragments { mask: fragments.mask & self.stippled(fragments), ..*fragments };
+        if f.mask == 0 {
+            return 0;
+        }
+        dispatch!(self.level, simd => self.run_fast(simd, &f, pixels))
     }
 }
 
