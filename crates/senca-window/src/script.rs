@@ -1,25 +1,4 @@
 //! Sessions written as a text, and replayed without a display.
-//!
-//! One command a line; words are parted by blanks; what follows a word that begins with `#` is a comment.
-//! Positions are pixels from the upper left corner, `x` to the right, `y` down.
-//!
-//! | command | what happens |
-//! |---|---|
-//! | `key NAME` | a key goes down and up again |
-//! | `down NAME`, `up NAME` | one of the two |
-//! | `type TEXT` | the keys of all characters, one after the other |
-//! | `press [BUTTON] X Y`, `release [BUTTON] X Y` | a button of the mouse, `left` if none is named |
-//! | `click [BUTTON] X Y` | both |
-//! | `drag [BUTTON] X Y X Y` | press, moves in up to 16 equal steps, release |
-//! | `move X Y` | the mouse moves |
-//! | `wheel N` | the wheel turns, away from the user above 0 |
-//! | `size W H` | the canvas gets another size |
-//! | `tick SECONDS [TIMES]` | time goes on, so often by so much |
-//! | `save FILE` | the picture as it is now is saved |
-//! | `quit` | the session ends |
-//!
-//! `TEXT` and `FILE` may hold blanks, and stand in `"` where they begin or end with one or hold ` #`; inside of
-//! them `\"` is a quotation mark and `\\` a backslash.
 
 mod parse;
 #[cfg(test)]
@@ -34,7 +13,28 @@ const MAX_EVENTS: u64 = 10_000_000;
 /// Most moves of a drag.
 const DRAG_STEPS: i32 = 16;
 
-/// A session, to be replayed.
+/// A session, to be replayed without a display.
+///
+/// One command a line; words are parted by blanks; what follows a word that begins with `#` is a comment.
+/// Positions are pixels from the upper left corner, `x` to the right, `y` down.
+///
+/// | command | what happens |
+/// |---|---|
+/// | `key NAME` | a key goes down and up again, see [`Key::from_name`] |
+/// | `down NAME`, `up NAME` | one of the two |
+/// | `type TEXT` | the keys of all characters, one after the other |
+/// | `press [BUTTON] X Y`, `release [BUTTON] X Y` | a button of the mouse, `left` if none is named |
+/// | `click [BUTTON] X Y` | both |
+/// | `drag [BUTTON] X Y X Y` | press, moves in up to 16 equal steps, release |
+/// | `move X Y` | the mouse moves |
+/// | `wheel N` | the wheel turns, away from the user above 0 |
+/// | `size W H` | the canvas gets another size |
+/// | `tick SECONDS [TIMES]` | time goes on, so often by so much |
+/// | `save FILE` | the picture as it is now is saved |
+/// | `quit` | the session ends |
+///
+/// `TEXT` and `FILE` may hold blanks, and stand in `"` where they begin or end with one or hold ` #`; inside of
+/// them `\"` is a quotation mark and `\\` a backslash. A script makes at most 10 000 000 events.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
     steps: Vec<Step>,
