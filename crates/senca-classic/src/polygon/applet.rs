@@ -45,19 +45,38 @@ pub struct PolygonApplet {
     brush: ScreenVertex,
     chosen: Option<VertexName>,
     held: bool,
-    as_printed: bool,
+    /// What P brings and takes away.
+    slips: Slips,
+    mended: bool,
     depths: bool,
     outlines: bool,
     size: (usize, usize),
 }
 
 impl PolygonApplet {
-    /// The exercise over some polygons, in a window of this size.
+    /// The exercise over some polygons, in a window of this size, with these slips; where there are
+    /// none, P brings all of them.
     #[must_use]
-    pub fn new(polygons: Vec<Vec<ScreenVertex>>, size: (usize, usize), as_printed: bool) -> Self {
+    pub fn new(polygons: Vec<Vec<ScreenVertex>>, size: (usize, usize), slips: Slips) -> Self {
+        let mended = slips == Slips::MENDED;
+        let slips = if mended { Slips::AS_PRINTED } else { slips };
         let brush = ScreenVertex::new(0, 0, 100, 255);
         let (open, chosen, held, depths, outlines) = (false, None, false, false, true);
-        Self { polygons, open, brush, chosen, held, as_printed, depths, outlines, size }
+        Self { polygons, open, brush, chosen, held, slips, mended, depths, outlines, size }
+    }
+
+    /// Beginning with depths in place of intensities, or not.
+    #[must_use]
+    pub fn showing_depths(mut self, depths: bool) -> Self {
+        self.depths = depths;
+        self
+    }
+
+    /// Beginning with outlines and vertices, or not.
+    #[must_use]
+    pub fn showing_outlines(mut self, outlines: bool) -> Self {
+        self.outlines = outlines;
+        self
     }
 
     /// The polygons as they are now.
@@ -69,7 +88,7 @@ impl PolygonApplet {
     /// The picture of all polygons of three or more vertices.
     #[must_use]
     pub fn picture(&self, width: u32, height: u32) -> PolygonPicture {
-        let slips = if self.as_printed { Slips::AS_PRINTED } else { Slips::MENDED };
+        let slips = if self.mended { Slips::MENDED } else { self.slips };
         let mut picture = PolygonPicture::new(width, height);
         for polygon in self.polygons.iter().filter(|polygon| polygon.len() > 2) {
             picture.draw(polygon, &slips);
@@ -180,7 +199,7 @@ impl PolygonApplet {
                 self.brush.b = level;
             }
             'n' => self.close(),
-            'p' => self.as_printed = !self.as_printed,
+            'p' => self.mended = !self.mended,
             'z' => self.depths = !self.depths,
             'o' => self.outlines = !self.outlines,
             'c' => {
@@ -241,7 +260,7 @@ impl Program for PolygonApplet {
             }
             None => format!("next vertex: z {} b {}", self.brush.z, self.brush.b),
         };
-        let slips = if self.as_printed { ", with the text's slips" } else { "" };
+        let slips = if self.mended { "" } else { ", with slips of the text" };
         format!("Polygon shading{slips} - {subject}")
     }
 
@@ -284,7 +303,7 @@ mod tests {
     use super::*;
 
     fn applet() -> PolygonApplet {
-        PolygonApplet::new(Vec::new(), (100, 80), false)
+        PolygonApplet::new(Vec::new(), (100, 80), Slips::MENDED)
     }
 
     fn click(applet: &mut PolygonApplet, x: i32, y: i32) {
@@ -364,7 +383,8 @@ mod tests {
                 .map(|[x, y]| ScreenVertex::new(x, y, z, b))
                 .to_vec()
         };
-        let mut applet = PolygonApplet::new(vec![square(10, 5, 200), square(30, 9, 100)], (100, 80), false);
+        let mut applet =
+            PolygonApplet::new(vec![square(10, 5, 200), square(30, 9, 100)], (100, 80), Slips::MENDED);
         press(&mut applet, Key::Char('o'));
         let at = |canvas: &Canvas| [20, 40, 60].map(|x| canvas.get(x, 30).unwrap_or(0) & 0xff);
         assert_eq!(at(&drawn(&mut applet)), [200, 200, 100]);

@@ -122,4 +122,17 @@ mod tests {
             assert_eq!(parse_polygons("p", text).expect_err(text).to_string(), expected);
         }
     }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "([ \\n\\n{}#é]|[0-9-]{1,4} ){0,60}") {
+            match parse_polygons("p", &text) {
+                Ok(polygons) => {
+                    let again = parse_polygons("p", &polygons_text(&polygons)).expect("reads");
+                    proptest::prop_assert_eq!(again, polygons);
+                }
+                Err(error) => proptest::prop_assert!(error.to_string().starts_with("p:")),
+            }
+        }
+    }
 }

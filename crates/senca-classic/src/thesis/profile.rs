@@ -253,4 +253,17 @@ mod tests {
         let error = Profile::parse("p", &many).expect_err("many").to_string();
         assert_eq!(error, "p:21:1: 21 nodes: there must be 2 to 20");
     }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "(node|model|background|[ \\n{}#é]|[0-9.e-]{1,4}|rgb|hls|nan){0,60}") {
+            match Profile::parse("p", &text) {
+                Ok(profile) => {
+                    proptest::prop_assert!(profile.check().is_ok());
+                    proptest::prop_assert_eq!(Profile::parse("p", &profile.text()).expect("reads"), profile);
+                }
+                Err(error) => proptest::prop_assert!(error.to_string().starts_with("p:")),
+            }
+        }
+    }
 }

@@ -128,7 +128,8 @@ pub fn render(
     database.compute_normals()?;
     database.cull(&view.kind);
     let wireframe = wireframe(scene, database, &view, settings);
-    let shaded = scene.light.map(|light| {
+    let faces = matches!(scene.operation, ClassicOperation::Phong | ClassicOperation::Gouraud);
+    let shaded = scene.light.filter(|_| faces).map(|light| {
         let style = ShadeStyle {
             raster: raster(scene),
             colors: settings.colors,
