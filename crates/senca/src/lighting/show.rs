@@ -206,7 +206,7 @@ impl Shot<'_> {
         };
         let mut film = Film::new(&film_settings)?;
         let report = film.expose_up_to(u32::MAX, &tracer, &mut Watch::default(), self.control)?;
-        Ok((film.develop(background == Background::None), report))
+        Ok((film.into_image(background == Background::None), report))
     }
 
     fn false_colors(&self) -> Option<FalseColors> {
