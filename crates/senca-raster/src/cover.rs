@@ -546,7 +546,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 ]),
                 _ => PixelColors::None,
             },
-            depth: self.band.depth.is_some().then_some(&mut buffer.depth[block][pair]),
+            depth: pass.touches.reads_depth.then_some(&mut buffer.depth[block][pair]),
             stencil: (self.band.stencil.is_some() && pass.needs.stencil)
                 .then_some(&mut buffer.stencil[block][pair]),
         }

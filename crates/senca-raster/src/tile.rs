@@ -108,6 +108,8 @@ pub(crate) struct Touches {
     pub(crate) color: bool,
     /// Whether depths are written.
     pub(crate) depth: bool,
+    /// Whether depths are read or written.
+    pub(crate) reads_depth: bool,
     /// Whether stencil values are read or written.
     pub(crate) stencil: bool,
     /// Whether the depth test passes only what is farther.
@@ -172,12 +174,13 @@ impl TileBuffer {
             None if touches.color => self.fetch_color(band, tile_x, block),
             None => {}
         }
-        if let Some(plane) = &band.depth {
-            match clear.and_then(|c| c.depth) {
+        let cleared_depth = clear.and_then(|c| c.depth);
+        if let Some(plane) = band.depth.as_ref().filter(|_| touches.reads_depth || cleared_depth.is_some()) {
+            match cleared_depth {
                 Some(depth) => fill(&mut self.depth[block], depth),
                 None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
             }
-            self.farthest[block] = match clear.and_then(|c| c.depth) {
+            self.farthest[block] = match cleared_depth {
                 Some(depth) if touches.reversed => -depth,
                 Some(depth) => depth,
                 None => farthest_of(&self.depth[block], touches.reversed),

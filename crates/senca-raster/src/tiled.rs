@@ -153,7 +153,10 @@ fn pass<'a>(
     let stage = stage_of(shading);
     let needs = stage.map(StageNeeds::of).unwrap_or_default();
     let custom = color == ColorPath::Plain;
-    let tests_depth = has_depth && !needs.tests_depth;
+    // A test that all pass and that writes nothing needs no depths.
+    let looks = state.depth_write || state.depth_test != Compare::Always || needs.tests_depth;
+    let reads_depth = has_depth && looks;
+    let tests_depth = reads_depth && !needs.tests_depth;
     let reversed = matches!(state.depth_test, Compare::Greater | Compare::GreaterEqual);
     let ordered = reversed || matches!(state.depth_test, Compare::Less | Compare::LessEqual);
     let hides_farther = tests_depth && ordered;
@@ -174,6 +177,7 @@ fn pass<'a>(
             clear,
             color: if stage.is_some() { needs.color } else { color != ColorPath::None },
             depth: has_depth && (state.depth_write || needs.tests_depth),
+            reads_depth,
             stencil: needs.stencil,
             reversed,
             samples: state.multisample && stage.is_some(),
@@ -187,7 +191,7 @@ fn pass<'a>(
         hides_farther,
         reversed,
         lowers_farthest: hides_farther && state.depth_write && !drops,
-        needs_depth: has_depth || custom,
+        needs_depth: reads_depth || custom,
         color,
         texture,
         slots,
