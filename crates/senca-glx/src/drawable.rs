@@ -158,6 +158,19 @@ pub(crate) fn detach_current() -> Option<Key> {
     key
 }
 
+/// Brings the drawable of the thread's context up to date, and the context to its size; `false` when it is gone.
+pub(crate) fn look_at_current() -> bool {
+    let mut there = false;
+    current::with(|c: &mut Current| {
+        c.present();
+        if let Some((window, gl)) = c.window_and_gl::<GlxWindow>() {
+            window.look(gl);
+            there = window.drawable.as_ref().is_some_and(|d| d.size != [0; 2]);
+        }
+    });
+    there
+}
+
 /// Gives the thread's context its drawable back.
 pub(crate) fn attach_current(key: Key) {
     current::with(|c: &mut Current| {

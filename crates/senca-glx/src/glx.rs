@@ -132,10 +132,17 @@ fn make_current(display: usize, id: u64, context: usize) -> bool {
     if context == 0 || id == 0 {
         return false;
     }
-    drawable::sweep(x, connection);
+    let key = (connection, id);
+    if current::current_handle() == context && current_key() == Some(key) {
+        return drawable::look_at_current();
+    }
+    let is_known = drawable::with(key, |_, _| ()).is_some();
+    if !is_known {
+        drawable::sweep(x, connection);
+    }
     let before = drawable::detach_current();
     let made = current::make_current(context, |c| {
-        c.window_and_gl::<GlxWindow>().is_some_and(|(window, gl)| window.attach(gl, (connection, id)))
+        c.window_and_gl::<GlxWindow>().is_some_and(|(window, gl)| window.attach(gl, key))
     });
     if !made && let Some(before) = before {
         drawable::attach_current(before);

@@ -104,6 +104,7 @@ static void double_buffered(void)
     /* Another size. */
     XResizeWindow(display, first, 140, 120);
     XSync(display, False);
+    CHECK(glXMakeCurrent(display, first, other));
     glViewport(0, 0, 140, 120);
     glDisable(GL_SCISSOR_TEST);
     glDrawBuffer(GL_BACK);
@@ -115,7 +116,7 @@ static void double_buffered(void)
     XDestroyWindow(display, first);
     clear(1, 0, 0);
     glXSwapBuffers(display, first);
-    CHECK(!glXMakeCurrent(display, first, context));
+    CHECK(!glXMakeCurrent(display, first, context) && !glXMakeCurrent(display, first, other));
     /* A context that is destroyed while it is current lives on until it is not. */
     CHECK(glXMakeCurrent(display, second, other));
     glXDestroyContext(display, other);
