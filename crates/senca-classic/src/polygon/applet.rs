@@ -29,7 +29,8 @@ const CHOSEN: u32 = 0xff_3030;
 const REACH: u32 = 6;
 /// Most vertices; more are not taken.
 const MAX_VERTICES: usize = 10_000;
-/// Bounds of intensity and depth.
+/// Bounds of places either way, of intensity and of depth.
+const FARTHEST: i32 = 1 << 15;
 const LARGEST: i32 = 255;
 const DEEPEST: i32 = 1_000_000;
 
@@ -127,7 +128,8 @@ impl PolygonApplet {
             self.open = true;
         }
         let polygon = self.polygons.len() - 1;
-        self.polygons[polygon].push(ScreenVertex { x, y, ..self.brush });
+        let bound = |n: i32| n.clamp(-FARTHEST, FARTHEST);
+        self.polygons[polygon].push(ScreenVertex { x: bound(x), y: bound(y), ..self.brush });
         self.chosen = Some((polygon, self.polygons[polygon].len() - 1));
     }
 
@@ -166,7 +168,7 @@ impl PolygonApplet {
 
     fn drag(&mut self, x: i32, y: i32) -> Flow {
         let Some((p, v)) = self.chosen.filter(|_| self.held) else { return Flow::Wait };
-        let bound = |n: i32| n.clamp(-DEEPEST, DEEPEST);
+        let bound = |n: i32| n.clamp(-FARTHEST, FARTHEST);
         let vertex = &mut self.polygons[p][v];
         (vertex.x, vertex.y) = (bound(x), bound(y));
         Flow::Redraw

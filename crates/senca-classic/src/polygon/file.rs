@@ -7,13 +7,15 @@ use senca_io::{Location, ReadError};
 
 use super::ScreenVertex;
 
-/// Largest coordinate, depth and intensity.
-const LARGEST: i32 = 1 << 20;
+/// Largest x and y either way: an edge is walked row by row.
+const LARGEST_PLACE: i32 = 1 << 15;
+/// Largest depth and intensity either way.
+const LARGEST_VALUE: i32 = 1 << 20;
 
 /// Reads polygons.
 ///
 /// # Errors
-/// With line and column for what is no whole number, or beyond a million, and for polygons of fewer
+/// With line and column for what is no whole number, or too large, and for polygons of fewer
 /// than three vertices.
 pub fn parse_polygons(name: &str, text: &str) -> Result<Vec<Vec<ScreenVertex>>, ReadError> {
     let mut polygons = Vec::new();
@@ -60,15 +62,16 @@ fn vertex(name: &str, line: u32, content: &str) -> Result<ScreenVertex, ReadErro
         |column: u32, message: String| Err(ReadError::malformed(Location::text(name, line, column), message));
     let mut words = content.split_whitespace();
     let mut numbers = [0; 4];
-    for (number, what) in numbers.iter_mut().zip(["x", "y", "z", "b"]) {
+    let parts = [("x", LARGEST_PLACE), ("y", LARGEST_PLACE), ("z", LARGEST_VALUE), ("b", LARGEST_VALUE)];
+    for (number, (what, largest)) in numbers.iter_mut().zip(parts) {
         let Some(word) = words.next() else {
             let end = content.trim_end().chars().count() as u32 + 1;
             return refuse(end, format!("expected {what}, found the end of the line"));
         };
         match word.parse::<i32>() {
-            Ok(value) if value.abs() <= LARGEST => *number = value,
+            Ok(value) if value.unsigned_abs() <= largest as u32 => *number = value,
             _ => {
-                let expected = format!("expected {what}, a whole number up to {LARGEST}, found \"{word}\"");
+                let expected = format!("expected {what}, a whole number up to {largest}, found \"{word}\"");
                 return refuse(column(word), expected);
             }
         }
@@ -113,10 +116,12 @@ mod tests {
     fn errors_say_where() {
         for (text, expected) in [
             ("1 2 3", "p:1:6: expected b, found the end of the line"),
-            ("1 2 3 4\n 1 a 3 4", "p:2:4: expected y, a whole number up to 1048576, found \"a\""),
+            ("1 2 3 4\n 1 a 3 4", "p:2:4: expected y, a whole number up to 32768, found \"a\""),
             ("1 2 3 4 5", "p:1:9: expected the end of the line, found \"5\""),
             ("1 2 3.5 4", "p:1:5: expected z, a whole number up to 1048576, found \"3.5\""),
             ("1 2 -9999999 4", "p:1:5: expected z, a whole number up to 1048576, found \"-9999999\""),
+            ("40000 2 3 4", "p:1:1: expected x, a whole number up to 32768, found \"40000\""),
+            ("1 2 -2147483648 4", "p:1:5: expected z, a whole number up to 1048576, found \"-2147483648\""),
             ("1 2 3 4\n1 2 3 4\n\n", "p:2:1: a polygon has at least 3 vertices, not 2"),
         ] {
             assert_eq!(parse_polygons("p", text).expect_err(text).to_string(), expected);
