@@ -37,7 +37,7 @@ pub(super) struct Edge<A> {
 impl<A: Attribute> Edge<A> {
     /// The edge between two places in device coordinates; `None` when it covers no row, or is not
     /// finite.
-
+    #[must_use]
     pub(super) fn new(a: (DVec3, A), b: (DVec3, A)) -> Option<Self> {
         let (from, to) = if (a.0.y as i64) < b.0.y as i64 { (a, b) } else { (b, a) };
         let rows = [from.0.y as i64, to.0.y as i64];
@@ -54,13 +54,13 @@ impl<A: Attribute> Edge<A> {
     }
 
     /// Rows that the edge has a point on, those outside of `0..height` passed over.
-
+    #[must_use]
     pub(super) fn rows(&self, height: i64) -> Range<i64> {
         self.rows[0].max(0)..self.rows[1].min(height)
     }
 
     /// The point on a row.
-
+    #[must_use]
     pub(super) fn at(&self, row: i64) -> EdgePoint<A> {
         let steps = (row - self.rows[0]) as f64;
         EdgePoint {

@@ -257,10 +257,10 @@ impl LutEditor {
     }
 
     fn set_table(&mut self) -> EditorReply {
-        if !self.as_printed {
-            if let Err(error) = self.profile.check() {
-                return say(format!("The profile cannot be used: {error}\n"));
-            }
+        if let Err(error) = self.profile.check()
+            && !self.as_printed
+        {
+            return say(format!("The profile cannot be used: {error}\n"));
         }
         self.recompute();
         EditorReply { redraw: true, ..EditorReply::default() }
