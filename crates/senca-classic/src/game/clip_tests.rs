@@ -151,6 +151,18 @@ proptest! {
     }
 
     #[test]
+    fn a_polygon_gets_at_most_two_corners_an_edge(
+        corners in prop::collection::vec(prop::array::uniform3(-500i32..500), 0..8), axis in 0usize..3, min in -99..99
+    ) {
+        let bounds = Bounds { axis, min, max: min + 200 };
+        for search in [Search::AsPrinted, Search::Precise, Search::SimilarTriangles] {
+            let clipped = clip_polygon(&corners, bounds, search);
+            prop_assert!(clipped.len() <= 2 * corners.len());
+            prop_assert!(clipped.iter().all(|c| (min..=min + 200).contains(&c[axis])));
+        }
+    }
+
+    #[test]
     fn halving_precisely_is_similar_triangles(
         a in prop::array::uniform2(-50_000i32..50_000), b in prop::array::uniform2(-50_000i32..50_000)
     ) {

@@ -435,6 +435,21 @@ mod tests {
     }
 
     #[test]
+    fn the_recorded_flight_stays_over_the_street() {
+        let text = include_str!("../../../../samples/classic/game-flight.keys");
+        let script = senca_window::Script::parse("game-flight.keys", text).expect("a script");
+        let mut flight = flight();
+        let last = script.run(&mut flight, |_, _| Ok::<_, ()>(())).expect("nothing is saved");
+        assert_eq!((last.width(), last.height()), (640, 400));
+        assert!(flight.moments().len() > 300 && flight.held.is_empty());
+        for Moment { viewer, .. } in flight.moments() {
+            assert!(viewer.eye[0].abs() < 150 && viewer.eye[1] > 10, "{viewer:?}");
+        }
+        let viewer = flight.now().viewer;
+        assert!(viewer.eye[2] > 1000 && viewer.roll == Angle(0) && viewer.pitch == Angle(0), "{viewer:?}");
+    }
+
+    #[test]
     fn the_picture_fits_any_canvas() {
         let mut flight = flight();
         for (width, height) in [(640, 400), (1, 1), (0, 0), (100, 1000), (700, 410)] {

@@ -135,7 +135,7 @@ fn road(x: usize, y: usize) -> u8 {
 }
 
 fn paving(x: usize, y: usize) -> u8 {
-    if x % 16 == 0 || y % 16 == 0 {
+    if x.is_multiple_of(16) || y.is_multiple_of(16) {
         return Hue::Grey.shade(12);
     }
     Hue::Sand.shade(19 + noise(x / 16 + 7, y / 16) / 4 + noise(x, y) / 7)
@@ -146,7 +146,7 @@ fn grass(x: usize, y: usize) -> u8 {
 }
 
 fn roof(x: usize, y: usize) -> u8 {
-    Hue::Grey.shade(if x % 32 == 0 || y % 32 == 0 { 9 } else { 15 + noise(x, y) / 6 })
+    Hue::Grey.shade(if x.is_multiple_of(32) || y.is_multiple_of(32) { 9 } else { 15 + noise(x, y) / 6 })
 }
 
 /// The whole world.
