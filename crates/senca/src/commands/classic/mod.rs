@@ -3,6 +3,7 @@
 mod bezcnv;
 mod colors;
 mod dialogue;
+mod game;
 mod lut;
 mod polygon;
 mod render;
@@ -28,6 +29,8 @@ enum Program {
     Bezcnv(bezcnv::Arguments),
     /// The exercise in polygon shading: intensities at vertices, on edges, inside
     Polygon(Box<polygon::Arguments>),
+    /// The game library of 1995: a street to fly through, each stage switchable and measured
+    Game(Box<game::Arguments>),
 }
 
 /// Runs the program.
@@ -37,5 +40,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Program::Lut(arguments) => lut::run(arguments),
         Program::Bezcnv(arguments) => bezcnv::run(arguments),
         Program::Polygon(arguments) => polygon::run(arguments),
+        Program::Game(arguments) => game::run(arguments),
     }
 }
