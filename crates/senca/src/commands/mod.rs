@@ -7,6 +7,7 @@ mod compare;
 mod convert;
 mod form_factor;
 mod info;
+mod lab;
 mod lux;
 mod render;
 mod view_matrix;
@@ -43,6 +44,8 @@ enum Command {
     FormFactor(form_factor::Arguments),
     /// Runs the programs of the books
     Classic(Box<classic::Arguments>),
+    /// Does the laboratory exercises
+    Lab(Box<lab::Arguments>),
     /// Measures this program on data it makes itself
     Bench(bench::Arguments),
 }
@@ -59,6 +62,7 @@ pub(crate) fn run(senca: Senca) -> Result<(), Failure> {
         Command::Lux(arguments) => lux::run(&arguments),
         Command::FormFactor(arguments) => form_factor::run(&arguments),
         Command::Classic(arguments) => classic::run(&arguments),
+        Command::Lab(arguments) => lab::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     }
 }
