@@ -49,6 +49,19 @@ fn deep_views_agree_with_many_digits() {
 }
 
 #[test]
+fn a_small_copy_of_the_whole_set() {
+    // A nucleus of period 460, 1.8e-29 in size.
+    let (re, im) = (
+        "-0.7746801319835207707515791989543337898602796034199812713724925884",
+        "-0.1374164012961857927162591905894840107238690621541539991172377345",
+    );
+    let counts = agrees(&view(re, im, "4e-28", 8_000, [8, 6]));
+    has_detail(&counts, 20);
+    let copy = deep_counts(&view(re, im, "2e-29", 8_000, [4, 4]), &Control::default()).expect("counted");
+    assert!(copy.at(2, 2) == 8_000, "the middle belongs to the set");
+}
+
+#[test]
 fn views_deeper_than_the_exponents_of_the_processor() {
     has_detail(&agrees(&view("0", "1", "1e-320", 5_000, [5, 4])), 3);
     has_detail(&agrees(&view("-2", "1e-401", "3e-400", 2_000, [6, 4])), 3);
