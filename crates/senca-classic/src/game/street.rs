@@ -201,7 +201,7 @@ fn textured_color(index: usize) -> u8 {
         Hue::Leaf.shade(15),
         Hue::Grey.shade(16),
     ][index / 2];
-    if index % 2 == 0 { lit } else { darker(lit, SIDE_LIGHT) }
+    if index.is_multiple_of(2) { lit } else { darker(lit, SIDE_LIGHT) }
 }
 
 /// A rectangle of ground between two places.

@@ -2,7 +2,6 @@
 
 mod failure;
 pub(crate) mod input;
-#[allow(dead_code, reason = "the form of all interactive programs, whichever of them are there")]
 pub(crate) mod interactive;
 mod interrupt;
 mod light;
