@@ -245,12 +245,9 @@ impl DrawPlanes {
     fn draw_single<R>(&mut self, i: usize, draw: &mut impl FnMut(Target<'_>, u32) -> R) -> Option<R> {
         let mut copies = self.copies(i, 0)?;
         copies.each_pair(self, i, |copy, plane| first_samples(plane, copy));
-        let before = copies.copies(0, 0).map(|mut before| {
-            before.each_pair(&mut copies, 0, |before, copy| copy_common(copy, before));
-            before
-        })?;
         let result = copies.draw_one(0, draw)?;
-        let changed = before.changes(&copies);
+        let mut changed = vec![false; self.width as usize * self.height as usize];
+        copies.each_pair(self, i, |copy, plane| mark_changes(copy, plane, &mut changed));
         copies.each_pair(self, i, |copy, plane| spread(copy, plane, &changed));
         Some(result)
     }
@@ -277,48 +274,81 @@ impl DrawPlanes {
             act(&mut copy.plane, &mut other.plane);
         }
     }
-
-    /// Which pixels differ from those of other copies.
-    fn changes(&self, others: &Self) -> Vec<bool> {
-        let mut changed = vec![false; self.width as usize * self.height as usize];
-        for (a, b) in self.all().zip(others.all()) {
-            match (&*a.texels, &*b.texels) {
-                (Texels::Rgba8(a), Texels::Rgba8(b)) => mark(&mut changed, a, b),
-                (Texels::Rgba32F(a), Texels::Rgba32F(b)) => mark(&mut changed, a, b),
-                (a, b) => {
-                    mark(&mut changed, a.depths().unwrap_or_default(), b.depths().unwrap_or_default());
-                    mark(&mut changed, a.stencils().unwrap_or_default(), b.stencils().unwrap_or_default());
-                }
-            }
-        }
-        changed
-    }
 }
 
-/// Marks where values differ.
-fn mark<T: PartialEq>(changed: &mut [bool], a: &[T], b: &[T]) {
-    for (changed, (a, b)) in changed.iter_mut().zip(a.iter().zip(b)) {
-        *changed |= a != b;
-    }
+/// Calls a function with the values of two planes of the same kind, and of what they have two kinds, twice.
+macro_rules! for_values {
+    ($a:expr, $b:expr, |$x:ident, $y:ident| $act:expr) => {
+        match ($a, $b) {
+            (Texels::Rgba8($x), Texels::Rgba8($y)) => $act,
+            (Texels::Rgba32F($x), Texels::Rgba32F($y)) => $act,
+            (Texels::Depth($x), Texels::Depth($y)) => $act,
+            (Texels::Stencil($x), Texels::Stencil($y)) => $act,
+            (
+                Texels::DepthStencil { depth: d1, stencil: s1 },
+                Texels::DepthStencil { depth: d2, stencil: s2 },
+            ) => {
+                let ($x, $y) = (d1, d2);
+                $act;
+                let ($x, $y) = (s1, s2);
+                $act;
+            }
+            _ => {}
+        }
+    };
+}
+
+/// Rows of pixels of a plane of one sample, and where those of another one have the samples of each: the upper
+/// and the lower ones, two for each pixel.
+fn rows_of_both(
+    one: &Plane,
+    four: &Plane,
+) -> impl Iterator<Item = (Range<usize>, [Range<usize>; 2])> + use<> {
+    let (width, rows) = (one.stride(), one.rows());
+    let (first, stride, to) = (four.at(0, 0), four.stride(), one.at(0, 0));
+    (0..rows).map(move |y| {
+        let start = |row: usize| first + row * stride;
+        let [upper, lower] = [start(2 * y), start(2 * y + 1)];
+        (to + y * width..to + (y + 1) * width, [upper..upper + 2 * width, lower..lower + 2 * width])
+    })
 }
 
 /// Copies the first sample of each pixel.
 fn first_samples(from: &Plane, to: &mut Plane) {
-    for y in 0..to.rows() {
-        for x in 0..to.stride() {
-            let (a, b) = (from.at(2 * x, 2 * y), to.at(x, y));
-            to.texels_mut().copy_run(b, &from.texels, a, 1);
-        }
+    for (row, [upper, _]) in rows_of_both(to, from) {
+        for_values!(&*from.texels, to.texels_mut(), |a, b| {
+            b[row.clone()]
+                .iter_mut()
+                .zip(a[upper.clone()].chunks_exact(2))
+                .for_each(|(to, from)| *to = from[0]);
+        });
+    }
+}
+
+/// Marks the pixels that are not what the first sample of `four` is.
+fn mark_changes(one: &Plane, four: &Plane, changed: &mut [bool]) {
+    for ((row, [upper, _]), changed) in rows_of_both(one, four).zip(changed.chunks_exact_mut(one.stride())) {
+        for_values!(&*one.texels, &*four.texels, |a, b| {
+            let pixels = a[row.clone()].iter().zip(b[upper.clone()].chunks_exact(2));
+            changed.iter_mut().zip(pixels).for_each(|(changed, (new, old))| *changed |= *new != old[0]);
+        });
     }
 }
 
 /// Copies the pixels that have changed to all their samples.
 fn spread(from: &Plane, to: &mut Plane, changed: &[bool]) {
-    for (i, _) in changed.iter().enumerate().filter(|(_, changed)| **changed) {
-        let (x, y) = (i % from.stride(), i / from.stride());
-        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let at = to.at(2 * x + dx, 2 * y + dy);
-            to.texels_mut().copy_run(at, &from.texels, i, 1);
+    for ((row, samples), changed) in rows_of_both(from, to).zip(changed.chunks_exact(from.stride())) {
+        if !changed.contains(&true) {
+            continue;
+        }
+        for samples in samples {
+            for_values!(&*from.texels, to.texels_mut(), |a, b| {
+                let pixels = b[samples.clone()].chunks_exact_mut(2).zip(&a[row.clone()]);
+                pixels
+                    .zip(changed)
+                    .filter(|(_, changed)| **changed)
+                    .for_each(|((to, from), _)| to.fill(*from));
+            });
         }
     }
 }
