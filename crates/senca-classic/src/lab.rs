@@ -2,7 +2,7 @@
 //! (Ž. Mihajlović, FER Zagreb, 2020), step by step as the manual gives them.
 //!
 //! 1. [`vectors`]: vectors and matrices, the system of three equations, barycentric coordinates.
-//! 2. [`line`]: Bresenham's line beside the built-in one.
+//! 2. [`mod@line`]: Bresenham's line beside the built-in one.
 //! 3. [`polygon`]: a convex polygon, its orientation, the point test, filling.
 //! 4. [`solid`]: plane equations of a solid, and whether a point lies in it.
 //! 5. [`view`]: the view transform both ways, and perspective.
