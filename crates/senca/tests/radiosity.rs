@@ -280,3 +280,16 @@ fn interrupted_light_can_be_shown() {
         std::fs::remove_file(early).expect("an early picture");
     }
 }
+
+#[test]
+fn darkness_is_told() {
+    let folder = folder();
+    let without_lamp: Vec<_> = ROOM.split("\n\n").filter(|part| !part.starts_with("[[light]]")).collect();
+    // A panel below the room that shines away from it.
+    let panel = "[material.lamp]\nemission = [5, 5, 5]\n\n[[object]]\nshape = \"plane\"\nsize = 1\n\
+                 material = \"lamp\"\nrotate = [180, 0, 0]\ntranslate = [0, -9, 0]\n";
+    let text = format!("{}\n{panel}", without_lamp.join("\n\n"));
+    std::fs::write(folder.path().join("away.toml"), text).expect("written");
+    let output = run(folder.path(), "render away.toml --method radiosity --size 16x12 -o dark.png");
+    assert!(output.status.success() && told(&output).contains("no light arrives"), "{}", told(&output));
+}

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum, ValueHint};
+use senca::math::LinearRgb;
 use senca::pipeline::Control;
 use senca::radiosity::book::FactorMethod;
 use senca::radiosity::{HierarchySettings, MeshSettings, Solution, SolveReport};
@@ -249,6 +250,7 @@ impl Light {
     fn of(solution: Solution, warnings: &[Warning]) -> Self {
         let mut warnings: Vec<String> = warnings.iter().map(|warning| warning.0.clone()).collect();
         warnings.extend(inexact(&solution.report));
+        warnings.extend(dark(&solution));
         Self { solution, warnings }
     }
 
@@ -258,6 +260,14 @@ impl Light {
             tell(&format!("senca: {}: warning: {warning}", name.display()));
         }
     }
+}
+
+/// Says that all is dark, where it is.
+fn dark(solution: &Solution) -> Option<String> {
+    let is_dark = !solution.incident.is_empty() && solution.incident.iter().all(|&l| l == LinearRgb::BLACK);
+    (is_dark && solution.report.converged).then(|| {
+        "no light arrives at any surface: nothing gives off any, or it shines past them all".to_owned()
+    })
 }
 
 /// Says that light is not as exact as it was asked to be, where it is not.
