@@ -106,12 +106,14 @@ fn only_commands_are_exported() {
 }
 
 /// Commands of the `sh` blocks of `docs/opengl.md`, in their order. Those of examples run in the tests of
-/// `senca-gl`.
+/// `senca-gl`, and what measures, for a shorter time, above.
 fn commands_of_the_document() -> Vec<String> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let text = std::fs::read_to_string(repository.join("docs/opengl.md")).unwrap();
     let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
-    let commands = blocks.flat_map(str::lines).filter(|line| !line.contains("--example"));
+    let commands = blocks
+        .flat_map(str::lines)
+        .filter(|line| !line.contains("--example") && !line.starts_with("./speed"));
     commands.map(str::to_owned).collect()
 }
 
