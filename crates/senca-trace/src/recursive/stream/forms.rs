@@ -65,6 +65,34 @@ struct Ball {
 /// Share of the squares of coordinates that their sums and products are surely exact to.
 const SURE: f64 = 1e-13;
 
+/// The balls as a place sees them, through which many rays pass: the eye, or a lamp.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sight(Vec<Cone>);
+
+/// The lines through a place that touch a ball.
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    to_center: DVec3,
+    /// A little less than `to_center . direction` of those lines, their unit directions turned to the ball.
+    least: f64,
+}
+
+/// Which balls eight rays may meet: a bit for each ball, and for each of those a bit for each ray.
+struct Ahead {
+    balls: u64,
+    rays: [u8; 64],
+}
+
+/// What is known about where rays pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Through<'a> {
+    Anywhere,
+    /// They start there.
+    From(&'a Sight),
+    /// They end there.
+    To(&'a Sight),
+}
+
 /// A flat piece.
 #[derive(Clone, Copy, Debug)]
 struct Sheet {
@@ -277,12 +305,26 @@ impl Forms {
         self.sheets.push(Sheet { normal, distance, outline, rank, opaque: object.opaque });
     }
 
+    /// The balls as this place sees them.
+    pub(super) fn seen_from(&self, place: DVec3) -> Sight {
+        let rounding = SURE * place.abs().max_element();
+        let cone = |ball: &Ball| {
+            let to_center = ball.center - place;
+            let squared = to_center.length_squared();
+            let tangent = squared - ball.radius_squared - SURE * (squared + ball.radius_squared);
+            let least = if tangent > 0.0 { tangent.sqrt() - rounding } else { f64::NEG_INFINITY };
+            Cone { to_center, least }
+        };
+        Sight(self.balls.iter().map(cone).collect())
+    }
+
     /// The nearest hits of the `live` rays. The hits of others are put into `hits`, by lane.
     #[inline(always)]
     pub(super) fn closest<S: Simd>(
         &self,
         simd: S,
         objects: &[Object<'_>],
+        through: Through<'_>,
         rays: &Packet<S>,
         live: M<S>,
         hits: &mut [Hit],
@@ -290,10 +332,11 @@ impl Forms {
     ) -> Nearest<S> {
         let (o, d, t_min) = (rays.origin, rays.direction, rays.t_min);
         let mut best = Nearest { t: F::splat(simd, f64::INFINITY), rank: F::splat(simd, -1.0) };
-        for ball in bits_of(self.balls_ahead(simd, o, d, live)) {
-            let ball = &self.balls[ball];
+        let ahead = self.balls_ahead(simd, through, o, d, live);
+        for number in bits_of(ahead.balls) {
+            let ball = &self.balls[number];
             let (middle, half_squared) = ball.chord(simd, o, d);
-            let met = half_squared.simd_gt(F::splat(simd, 0.0));
+            let met = ahead.rays(simd, number) & half_squared.simd_gt(F::splat(simd, 0.0));
             let half = half_squared.sqrt();
             let (enter, leave) = (middle - half, middle + half);
             let t = enter.simd_gt(t_min).select(enter, leave);
@@ -351,17 +394,27 @@ impl Forms {
         }
     }
 
-    /// A bit for each ball that the line of a live ray may meet ahead of its origin. To look at all first
-    /// takes no branches, and the few that are left can be looked at closely.
+    /// The balls that live rays may meet. To look at all first takes no branches, and the few that are left
+    /// can be looked at closely.
+    #[inline(always)]
+    fn balls_ahead<S: Simd>(&self, simd: S, through: Through<'_>, o: V<S>, d: V<S>, live: M<S>) -> Ahead {
+        match through {
+            Through::Anywhere => self.balls_anywhere(simd, o, d, live),
+            Through::From(sight) => sight.balls_along(simd, d, live),
+            Through::To(sight) => sight.balls_along(simd, d.opposite(), live),
+        }
+    }
+
+    /// [`Self::balls_ahead`] of any rays.
     ///
     /// The distance of the origin from the ball is expanded into products of both centres, which takes fewer
     /// steps and loses digits, so a little room is left.
     #[inline(always)]
-    fn balls_ahead<S: Simd>(&self, simd: S, o: V<S>, d: V<S>, live: M<S>) -> u64 {
+    fn balls_anywhere<S: Simd>(&self, simd: S, o: V<S>, d: V<S>, live: M<S>) -> Ahead {
         let zero = F::splat(simd, 0.0);
         let (along, squared) = (o.dot(d), o.dot(o) * F::splat(simd, 1.0 - SURE));
         let twice = o.add(o);
-        let mut ahead = 0;
+        let mut ahead = Ahead::default();
         for (number, ball) in self.balls.iter().enumerate() {
             let center = V::splat(simd, ball.center);
             let middle = center.dot(d) - along;
@@ -369,7 +422,7 @@ impl Forms {
             let tangent = squared + F::splat(simd, ball.least) - center.dot(twice);
             let met =
                 live & (middle.simd_gt(zero) | tangent.simd_lt(zero)) & (middle * middle).simd_gt(tangent);
-            ahead |= u64::from(met.any_true()) << (number % 64);
+            ahead.put(number, met);
         }
         ahead
     }
@@ -380,6 +433,7 @@ impl Forms {
         &self,
         simd: S,
         objects: &[Object<'_>],
+        through: Through<'_>,
         o: V<S>,
         d: V<S>,
         t_max: F<S>,
@@ -389,12 +443,17 @@ impl Forms {
         let zero = F::splat(simd, 0.0);
         let mut clear = live;
         let mut tests = 0;
-        let ahead = self.balls_ahead(simd, o, d, live) & self.opaque_balls;
+        let ahead = self.balls_ahead(simd, through, o, d, live);
         tests += self.balls.len() as u64;
-        for ball in bits_of(ahead) {
-            let ball = &self.balls[ball];
+        for number in bits_of(ahead.balls & self.opaque_balls) {
+            let ball = &self.balls[number];
             let (middle, half_squared) = ball.chord(simd, o, d);
-            let met = half_squared.simd_gt(zero);
+            // Not where it lies behind the origin, as the ball does on which the rays start.
+            let is_ahead = middle.simd_gt(zero) | half_squared.simd_gt(middle * middle);
+            let met = ahead.rays(simd, number) & half_squared.simd_gt(zero) & is_ahead;
+            if !met.any_true() {
+                continue;
+            }
             let half = half_squared.sqrt();
             let (enter, leave) = (middle - half, middle + half);
             let within =
@@ -484,6 +543,41 @@ impl<S: Simd> Nearest<S> {
         let nearer = met & self.is_before(t, rank);
         self.t = nearer.select(t, self.t);
         self.rank = nearer.select(rank, self.rank);
+    }
+}
+
+impl Default for Ahead {
+    #[inline(always)]
+    fn default() -> Self {
+        Self { balls: 0, rays: [0; 64] }
+    }
+}
+
+impl Ahead {
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, number: usize, met: M<S>) {
+        let rays = met.to_bitmask();
+        self.balls |= u64::from(rays != 0) << (number % 64);
+        self.rays[number % 64] = rays as u8;
+    }
+
+    /// The rays that may meet this ball.
+    #[inline(always)]
+    fn rays<S: Simd>(&self, simd: S, number: usize) -> M<S> {
+        M::from_bitmask(simd, u64::from(self.rays[number % 64]))
+    }
+}
+
+impl Sight {
+    /// Which balls lie along unit directions from the place.
+    #[inline(always)]
+    fn balls_along<S: Simd>(&self, simd: S, d: V<S>, live: M<S>) -> Ahead {
+        let mut ahead = Ahead::default();
+        for (number, cone) in self.0.iter().enumerate() {
+            let along = V::splat(simd, cone.to_center).dot(d);
+            ahead.put(number, live & along.simd_gt(F::splat(simd, cone.least)));
+        }
+        ahead
     }
 }
 

@@ -5,6 +5,8 @@ use senca_math::LinearRgb;
 use senca_math::glam::DVec3;
 use senca_shading::PhongConstants;
 
+use super::MOST_FORMS;
+use super::forms::{Forms, Sight, Through};
 use crate::lanes::{F, LANES, M};
 use crate::material::{MaterialPoint, ReflectionPoint};
 use crate::recursive::lamps::ToLight;
@@ -141,22 +143,32 @@ impl<S: Simd> Looks<S> {
 }
 
 /// A light of which many places at once know what it sends.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Lamp {
     /// The same colour from a place, or from afar.
-    Simple(ToLight, DVec3),
+    Simple(ToLight, DVec3, Option<Sight>),
     /// Asked place by place.
     General,
 }
 
 impl Lamp {
     /// The light of this number.
-    pub(super) fn of(tracer: &Tracer<'_>, number: usize) -> Self {
-        match tracer.lights[number].simple() {
-            Some((to_light, color)) => {
-                Self::Simple(to_light, DVec3::from_array(color.to_array().map(f64::from)))
-            }
-            None => Self::General,
+    pub(super) fn of(tracer: &Tracer<'_>, forms: &Forms, number: usize) -> Self {
+        let Some((to_light, color)) = tracer.lights[number].simple() else { return Self::General };
+        let color = DVec3::from_array(color.to_array().map(f64::from));
+        let sight = match to_light {
+            ToLight::Place(place) if forms.len() <= MOST_FORMS => Some(forms.seen_from(place)),
+            _ => None,
+        };
+        Self::Simple(to_light, color, sight)
+    }
+
+    /// What is known about where rays towards it pass.
+    #[inline(always)]
+    pub(super) fn through(&self) -> Through<'_> {
+        match self {
+            Self::Simple(_, _, Some(sight)) => Through::To(sight),
+            _ => Through::Anywhere,
         }
     }
 }

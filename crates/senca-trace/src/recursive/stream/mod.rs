@@ -32,7 +32,7 @@ use super::{Blockers, Tracer};
 use crate::intersect::RayBlock;
 use crate::lanes::{F, LANES, V, eight, first_lanes};
 use crate::{Accel, Hit, Object, SamplePlace, TraceCounts};
-use forms::{Forms, Kind, NO_HIT, Rank};
+use forms::{Forms, Kind, NO_HIT, Rank, Sight, Through};
 use looks::{Lamp, Look, Way};
 use rays::{Packet, Rays};
 
@@ -70,6 +70,8 @@ pub(super) struct Stream {
     /// The same as stretches of ranks: the first and the last, and the group.
     stretches: Vec<(i64, i64, usize)>,
     lamps: Vec<Lamp>,
+    /// The eye, where rays without a lens start.
+    eye: Option<Sight>,
     /// Whether there are few enough surfaces to test packets against all.
     is_flat: bool,
     /// Whether shadow rays meet surfaces that have to be asked how much they block.
@@ -161,14 +163,21 @@ impl Stream {
         };
         let groups: Vec<u8> =
             std::iter::once(LEAVING).chain(forms.ranks.iter().map(group)).map(|group| group as u8).collect();
+        let lamps = (0..tracer.lights.len()).map(|light| Lamp::of(tracer, &forms, light)).collect();
+        let is_flat = forms.len() <= MOST_FORMS;
+        let eye = match tracer.view.kind {
+            ViewKind::Central { eye_world } if is_flat => Some(forms.seen_from(eye_world)),
+            _ => None,
+        };
         Some(Self {
             level: Level::new(),
-            is_flat: forms.len() <= MOST_FORMS,
+            is_flat,
             stretches: stretches_of(&groups),
             groups,
             forms,
             looks,
-            lamps: (0..tracer.lights.len()).map(|light| Lamp::of(tracer, light)).collect(),
+            lamps,
+            eye,
             asks: tracer.blockers != Blockers::All,
         })
     }
@@ -320,10 +329,15 @@ impl Tracer<'_> {
         }
         let Desk { rays, t, rank, hits, .. } = &mut *pass.desk;
         let counters = &mut pass.counts.work;
+        let through = match &stream.eye {
+            Some(eye) if pass.nest == 0 && !self.rays.has_lens() => Through::From(eye),
+            _ => Through::Anywhere,
+        };
         for first in (0..rays.len()).step_by(LANES) {
             let (packet, live) = rays.load(simd, first);
             let hits = &mut hits[first..][..LANES];
-            let found = stream.forms.closest(simd, self.world.objects(), &packet, live, hits, counters);
+            let found =
+                stream.forms.closest(simd, self.world.objects(), through, &packet, live, hits, counters);
             found.t.store_slice(&mut t[first..][..LANES]);
             let found: i64x8<S> = found.rank.to_int();
             found.store_slice(&mut rank[first..][..LANES]);

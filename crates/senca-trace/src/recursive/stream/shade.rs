@@ -5,7 +5,7 @@ use senca_math::LinearRgb;
 use senca_math::glam::{DVec2, DVec3, Vec3};
 use senca_shading::{Incident, PhongConstants};
 
-use super::forms::Rank;
+use super::forms::{Rank, Through};
 use super::looks::{Lamp, Look, Looks, Way};
 use super::power::power;
 use super::rays::{Packet, Rays, gather};
@@ -312,7 +312,7 @@ impl Tracer<'_> {
             let count = self.lights[number].places(self.settings.soft_shadows);
             for index in 0..count {
                 let coming = match lamp {
-                    Lamp::Simple(to_light, color) => from_simple(simd, places, *to_light, *color, live),
+                    Lamp::Simple(to_light, color, _) => from_simple(simd, places, *to_light, *color, live),
                     Lamp::General => self.lamp_light(simd, pass, rays, live, places, number, index),
                 };
                 let mut reflected = reflected(simd, rays, places, &coming);
@@ -329,7 +329,7 @@ impl Tracer<'_> {
                 let (direction, distance) = (way, F::splat(simd, 0.0));
                 let shadow =
                     Packet { origin, direction, t_min: t_max, weight: arriving, distance, slot: rays.slot };
-                let (now, later) = self.clear_at_once(simd, stream, pass, &shadow, lit);
+                let (now, later) = self.clear_at_once(simd, stream, pass, lamp.through(), &shadow, lit);
                 for k in 0..3 {
                     light[k] += now.select(arriving[k], F::splat(simd, 0.0));
                 }
@@ -347,6 +347,7 @@ impl Tracer<'_> {
         simd: S,
         stream: &Stream,
         pass: &mut Pass<'_>,
+        through: Through<'_>,
         shadow: &Packet<S>,
         lit: M<S>,
     ) -> (M<S>, M<S>) {
@@ -360,7 +361,8 @@ impl Tracer<'_> {
         pass.counts.rays.shadow += u64::from(lit.to_bitmask().count_ones());
         let (objects, counters) = (self.world.objects(), &mut pass.counts.work);
         let Packet { origin, direction, t_min: t_max, .. } = *shadow;
-        let clear = lit & !stream.forms.occluded(simd, objects, origin, direction, t_max, lit, counters);
+        let blocked = stream.forms.occluded(simd, objects, through, origin, direction, t_max, lit, counters);
+        let clear = lit & !blocked;
         if stream.forms.patched.is_empty() {
             return (clear, none);
         }
@@ -423,7 +425,8 @@ impl Tracer<'_> {
             let (rays, live) = list.load(simd, first + from);
             let blocked = if stream.is_flat {
                 let (objects, Packet { origin, direction, t_min: t_max, .. }) = (self.world.objects(), rays);
-                stream.forms.occluded(simd, objects, origin, direction, t_max, live, counters)
+                let anywhere = Through::Anywhere;
+                stream.forms.occluded(simd, objects, anywhere, origin, direction, t_max, live, counters)
             } else {
                 M::splat(simd, false)
             };

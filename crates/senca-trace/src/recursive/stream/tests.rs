@@ -6,6 +6,7 @@ use fearless_simd::Level;
 use senca_math::{LinearRgb, View};
 use senca_scene::{Background, Camera, Scene};
 
+use super::Lamp;
 use crate::recursive::{RecursiveSettings, Tracer, Work};
 use crate::{Integrator, Pattern, SamplePlace, Sampler, TraceCounts, World};
 
@@ -139,6 +140,23 @@ fn a_sample_does_not_depend_on_those_beside_it() {
                 tracer.sample_many(places, &mut work, &mut alone);
             }
             assert!(together == alone, "{name}");
+        });
+    }
+}
+
+#[test]
+fn what_the_eye_and_the_lamps_see_of_balls_changes_nothing() {
+    for name in ["mirrors.toml", "shadows.toml", "glass.toml"] {
+        with_fast(name, |tracer| {
+            let with_sights = picture(tracer);
+            let stream = tracer.stream.as_mut().expect("the fast way");
+            assert!(stream.eye.take().is_some(), "{name}");
+            for lamp in &mut stream.lamps {
+                if let Lamp::Simple(_, _, sight) = lamp {
+                    *sight = None;
+                }
+            }
+            assert!(picture(tracer) == with_sights, "{name}");
         });
     }
 }
