@@ -11,11 +11,11 @@
 use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, TextureUnit};
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
-use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
+use crate::setup::{Bounds, HALF, Plane, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{FragmentStage, PixelColors, Pixels, StageNeeds};
 use crate::textured::{TextureQueue, Waiting};
 use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer, Touches};
-use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x8, f32x16, i32x8, i32x16, mask32x8, mask32x16, prelude::*, u32x16};
 
 /// What a draw's kernel needs to know, the same for all its triangles.
 pub(crate) struct Pass<'a> {
@@ -40,6 +40,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) lowers_farthest: bool,
     /// Depths of fragments are wanted.
     pub(crate) needs_depth: bool,
+    /// Depths are tested in order and written, and nothing else is done; see [`crate::depth`].
+    pub(crate) depth_only: bool,
     /// How fragments are coloured.
     pub(crate) color: ColorPath,
     /// The texture the colour is multiplied by, and the slot of u.
@@ -145,11 +147,15 @@ impl TileEdges {
     }
 }
 
+/// First pixels of a tile's columns of blocks.
+const BLOCK_X: [i32; BLOCKS] = [0, 8, 16, 24, 32, 40, 48, 56];
+const BLOCK_FX: [f32; BLOCKS] = [0., 8., 16., 24., 32., 40., 48., 56.];
+
 /// Lane numbers within a vector: column 0 to 7, row 0 or 1.
 const LANE_X: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const LANE_Y: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
-const LANE_FX: [f32; LANES] = [0., 1., 2., 3., 4., 5., 6., 7., 0., 1., 2., 3., 4., 5., 6., 7.];
-const LANE_FY: [f32; LANES] = [0., 0., 0., 0., 0., 0., 0., 0., 1., 1., 1., 1., 1., 1., 1., 1.];
+pub(crate) const LANE_FX: [f32; LANES] = [0., 1., 2., 3., 4., 5., 6., 7., 0., 1., 2., 3., 4., 5., 6., 7.];
+pub(crate) const LANE_FY: [f32; LANES] = [0., 0., 0., 0., 0., 0., 0., 0., 1., 1., 1., 1., 1., 1., 1., 1.];
 
 /// One tile being drawn. `FAST` fixes what most draws have: an 8-bit colour target, no blending, no
 /// identifiers; the rest of the code is the same.
@@ -179,14 +185,26 @@ struct Row<S: Simd> {
 
 /// A plane's `c + dy * fy`; see [`Plane::at`].
 #[inline(always)]
-fn row_of<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, fy: f32x16<S>) -> f32x16<S> {
+pub(crate) fn row_of<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, fy: f32x16<S>) -> f32x16<S> {
     f32x16::splat(simd, p[0][lane]) + f32x16::splat(simd, p[2][lane]) * fy
 }
 
 /// A plane at 16 pixels, from its row.
 #[inline(always)]
-fn along<S: Simd>(simd: S, p: &PlaneLanes, lane: usize, row: f32x16<S>, fx: f32x16<S>) -> f32x16<S> {
+pub(crate) fn along<S: Simd>(
+    simd: S,
+    p: &PlaneLanes,
+    lane: usize,
+    row: f32x16<S>,
+    fx: f32x16<S>,
+) -> f32x16<S> {
     row + f32x16::splat(simd, p[1][lane]) * fx
+}
+
+/// [`Plane::at`] in eight columns of a row.
+#[inline(always)]
+fn plane_at<S: Simd>(simd: S, p: &Plane, fx: f32x8<S>, fy: f32) -> f32x8<S> {
+    f32x8::splat(simd, p.c + p.dy * fy) + f32x8::splat(simd, p.dx) * fx
 }
 
 /// Where a vector is.
@@ -231,12 +249,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             [edge_lanes(simd, b, 0, lane), edge_lanes(simd, b, 1, lane), edge_lanes(simd, b, 2, lane)];
         let (first, last) = (x0 >> 3, (x1 - 1) >> 3);
         for by in y0 >> 3..=(y1 - 1) >> 3 {
-            let (mut active, mut full) = (0u32, 0u32);
-            for bx in first..=last {
-                let [touched, whole] = self.block(lane, bx, by, last - first > 1);
-                active |= u32::from(touched) << bx;
-                full |= u32::from(whole) << bx;
-            }
+            let [active, full] = self.blocks(simd, lane, by, [first, last]);
             if active == 0 {
                 continue;
             }
@@ -245,83 +258,106 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                     self.block_of_samples(simd, lane, [bx, by], full >> bx & 1 == 1);
                 }
                 if full != 0 && self.pass.lowers_farthest {
-                    self.lower_farthest(lane, by, full);
+                    self.lower_farthest(simd, lane, by, full);
                 }
                 continue;
             }
             let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
-            for pair in top..=bottom {
-                self.row(simd, lane, &lanes, [by, pair], [active, full]);
+            if !FAST && self.pass.depth_only {
+                self.depths(simd, lane, &lanes, by, [top, bottom], [active, full]);
+            } else {
+                for pair in top..=bottom {
+                    self.row(simd, lane, &lanes, [by, pair], [active, full]);
+                }
             }
             if full != 0 && self.pass.lowers_farthest {
-                self.lower_farthest(lane, by, full);
+                self.lower_farthest(simd, lane, by, full);
             }
         }
     }
 
-    /// Whether a block is to be drawn, and whether the triangle covers all of it. Brings it in if so.
+    /// Which blocks of row `by`, from column `first` to `last`, are to be drawn, and which of them the
+    /// triangle covers wholly, bit by bit. Brings in those that it touches.
     #[inline(always)]
-    fn block(&mut self, lane: usize, bx: i32, by: i32, test: bool) -> [bool; 2] {
-        let block = (by * 8 + bx) as usize & 63;
-        let mut whole = false;
-        if test {
-            let b = &*self.batch;
-            let (mut most, mut least) = (0, 0);
-            for k in 0..3 {
-                let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
-                let at = b.edge[k][lane]
-                    .wrapping_add(dx.wrapping_mul(8 * bx))
-                    .wrapping_add(dy.wrapping_mul(8 * by));
-                most |= at.wrapping_add(7 * dx.max(0)).wrapping_add(7 * dy.max(0));
-                least |= at.wrapping_add(7 * dx.min(0)).wrapping_add(7 * dy.min(0));
-            }
-            if most < 0 {
-                return [false, false];
-            }
-            whole = least >= 0 && !self.partial;
-        }
-        if self.buffer.present >> block & 1 == 0 {
+    fn blocks<S: Simd>(&mut self, simd: S, lane: usize, by: i32, [first, last]: [i32; 2]) -> [u32; 2] {
+        let range = (2 << last) - (1 << first);
+        // Few blocks are not worth the tests.
+        let test = last - first > 1;
+        let [touched, whole] = if test { self.touched(simd, lane, by) } else { [range, 0] };
+        let touched = touched & range;
+        let row = self.first_block(by);
+        let mut missing = touched & !(self.buffer.present >> row) as u32;
+        while missing != 0 {
+            let block = row + missing.trailing_zeros() as usize;
+            missing &= missing - 1;
             self.buffer.fetch(self.band, self.tile[0] as usize, block, &self.pass.touches);
         }
-        if self.pass.hides_farther {
-            let nearest = if test {
-                self.block_depth(lane, bx, by)[0]
-            } else if self.pass.reversed {
-                -self.batch.z_max[lane]
-            } else {
-                self.batch.z_min[lane]
-            };
-            if nearest > self.buffer.farthest[block] {
-                return [false, false];
-            }
+        if !self.pass.hides_farther {
+            return [touched, touched & whole];
         }
-        [true, whole]
+        let nearest = if test {
+            self.block_depths(simd, lane, by)[0]
+        } else if self.pass.reversed {
+            f32x8::splat(simd, -self.batch.z_max[lane])
+        } else {
+            f32x8::splat(simd, self.batch.z_min[lane])
+        };
+        let farthest = f32x8::from_slice(simd, &self.buffer.farthest[row..][..BLOCKS]);
+        let seen = touched & !(nearest.simd_gt(farthest).to_bitmask() as u32);
+        [seen, seen & whole]
     }
 
-    /// Nearest and farthest depth of the triangle's plane over a block, clamped to the triangle's;
-    /// negated where the depth test is reversed. Rounding keeps order, so both are found at corners,
-    /// exactly.
+    /// Number of the first block of a row.
     #[inline(always)]
-    fn block_depth(&self, lane: usize, bx: i32, by: i32) -> [f32; 2] {
+    fn first_block(&self, by: i32) -> usize {
+        (by as usize % BLOCKS) * BLOCKS
+    }
+
+    /// Which of the eight blocks of a row are not outside an edge, and which are inside all.
+    #[inline(always)]
+    fn touched<S: Simd>(&self, simd: S, lane: usize, by: i32) -> [u32; 2] {
         let b = &*self.batch;
-        let (fx, fy) = ((b.offset[0][lane] + 8 * bx) as f32, (b.offset[1][lane] + 8 * by) as f32);
+        let columns = i32x8::load_array(simd, BLOCK_X);
+        let (mut most, mut least) = (i32x8::splat(simd, 0), i32x8::splat(simd, 0));
+        for k in 0..3 {
+            let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
+            let row = b.edge[k][lane].wrapping_add(dy.wrapping_mul(8 * by));
+            let at = i32x8::splat(simd, row) + columns * i32x8::splat(simd, dx);
+            most |= at + i32x8::splat(simd, (7 * dx.max(0)).wrapping_add(7 * dy.max(0)));
+            least |= at + i32x8::splat(simd, (7 * dx.min(0)).wrapping_add(7 * dy.min(0)));
+        }
+        let zero = i32x8::splat(simd, 0);
+        let whole = if self.partial { 0 } else { least.simd_ge(zero).to_bitmask() as u32 };
+        [most.simd_ge(zero).to_bitmask() as u32, whole]
+    }
+
+    /// Nearest and farthest depth of the triangle's plane over the blocks of a row, clamped to the
+    /// triangle's; negated where the depth test is reversed. Rounding keeps order, so both are found at
+    /// corners, exactly, and the plane's slopes say at which.
+    #[inline(always)]
+    fn block_depths<S: Simd>(&self, simd: S, lane: usize, by: i32) -> [f32x8<S>; 2] {
+        let b = &*self.batch;
         let p = Batch::plane(&b.depth, lane);
-        let corners = [p.at(fx, fy), p.at(fx + 7.0, fy), p.at(fx, fy + 7.0), p.at(fx + 7.0, fy + 7.0)];
-        let low = corners[0].min(corners[1]).min(corners[2]).min(corners[3]);
-        let high = corners[0].max(corners[1]).max(corners[2]).max(corners[3]);
-        let low = low.max(b.z_min[lane]).min(b.z_max[lane]);
-        let high = high.max(b.z_min[lane]).min(b.z_max[lane]);
+        let fx = f32x8::load_array(simd, BLOCK_FX) + f32x8::splat(simd, b.offset[0][lane] as f32);
+        let fy = (b.offset[1][lane] + 8 * by) as f32;
+        let [x_low, x_high] = if p.dx >= 0.0 { [0.0, 7.0] } else { [7.0, 0.0] };
+        let [y_low, y_high] = if p.dy >= 0.0 { [0.0, 7.0] } else { [7.0, 0.0] };
+        let low = plane_at(simd, &p, fx + f32x8::splat(simd, x_low), fy + y_low);
+        let high = plane_at(simd, &p, fx + f32x8::splat(simd, x_high), fy + y_high);
+        let (z_min, z_max) = (f32x8::splat(simd, b.z_min[lane]), f32x8::splat(simd, b.z_max[lane]));
+        let (low, high) = (low.max(z_min).min(z_max), high.max(z_min).min(z_max));
         if self.pass.reversed { [-high, -low] } else { [low, high] }
     }
 
     /// After blocks have been covered wholly: nothing in them is farther than the triangle any more.
     #[inline(always)]
-    fn lower_farthest(&mut self, lane: usize, by: i32, full: u32) {
-        for bx in (0..8).filter(|bx| full >> bx & 1 == 1) {
-            let farthest = self.block_depth(lane, bx, by)[1];
-            let stored = &mut self.buffer.farthest[(by * 8 + bx) as usize & 63];
-            *stored = stored.min(farthest);
-        }
+    fn lower_farthest<S: Simd>(&mut self, simd: S, lane: usize, by: i32, full: u32) {
+        let farthest = self.block_depths(simd, lane, by)[1];
+        let row = self.first_block(by);
+        let stored = &mut self.buffer.farthest[row..][..BLOCKS];
+        let before = f32x8::from_slice(simd, stored);
+        let lower = mask32x8::from_bitmask(simd, u64::from(full)) & farthest.simd_lt(before);
+        lower.select(farthest, before).store_slice(stored);
     }
 
     /// Two rows of pixels, block by block.
@@ -368,7 +404,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// Lanes that may be written, of the vector at pixel (`x`, `y`) of the tile.
     #[inline(always)]
-    fn within_bounds<S: Simd>(&self, simd: S, x: i32, y: i32) -> mask32x16<S> {
+    pub(crate) fn within_bounds<S: Simd>(&self, simd: S, x: i32, y: i32) -> mask32x16<S> {
         let b = &self.bounds;
         let column = i32x16::load_array(simd, LANE_X) + i32x16::splat(simd, self.tile[0] + x);
         let row = i32x16::load_array(simd, LANE_Y) + i32x16::splat(simd, self.tile[1] + y);

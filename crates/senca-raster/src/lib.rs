@@ -49,6 +49,7 @@ mod bin;
 mod blend;
 pub mod clip;
 mod cover;
+mod depth;
 mod lines;
 mod multisample;
 mod pixel;

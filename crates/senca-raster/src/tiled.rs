@@ -192,6 +192,11 @@ fn pass<'a>(
         reversed,
         lowers_farthest: hides_farther && state.depth_write && !drops,
         needs_depth: reads_depth || custom,
+        depth_only: hides_farther
+            && state.depth_write
+            && stage.is_none()
+            && color == ColorPath::None
+            && target.ids.is_none(),
         color,
         texture,
         slots,

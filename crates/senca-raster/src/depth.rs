@@ -1,0 +1,129 @@
+//! Triangles that write depths and nothing else, as shadow maps and first passes do: [`crate::cover`]'s
+//! rows of blocks with all that is the same for a block held in registers. The numbers are the same.
+
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
+
+use crate::api::Compare;
+use crate::batch::Batch;
+use crate::cover::{LANE_FX, LANE_FY, TileDraw, along, row_of};
+
+/// Row pairs of a block.
+const PAIRS: usize = 4;
+
+impl<const FAST: bool> TileDraw<'_, '_, FAST> {
+    /// Tests and writes depths in the `active` blocks of row `by`, of which the `full` ones are covered
+    /// wholly, from the row pair `top` to `bottom`.
+    #[inline(always)]
+    pub(crate) fn depths<S: Simd>(
+        &mut self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        by: i32,
+        pairs: [i32; 2],
+        blocks: [u32; 2],
+    ) {
+        match self.pass.state.depth_test {
+            Compare::Less => self.depths_by(simd, lane, lanes, by, pairs, blocks, less),
+            Compare::Greater => self.depths_by(simd, lane, lanes, by, pairs, blocks, greater),
+            Compare::GreaterEqual => self.depths_by(simd, lane, lanes, by, pairs, blocks, greater_equal),
+            _ => self.depths_by(simd, lane, lanes, by, pairs, blocks, less_equal),
+        }
+    }
+
+    #[inline(always)]
+    fn depths_by<S: Simd>(
+        &mut self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        by: i32,
+        [top, bottom]: [i32; 2],
+        [active, full]: [u32; 2],
+        passes: impl Fn(f32x16<S>, f32x16<S>) -> mask32x16<S>,
+    ) {
+        let b = &*self.batch;
+        let [left, above] = [b.offset[0][lane], b.offset[1][lane] + 8 * by];
+        let mut rows = [f32x16::splat(simd, 0.0); PAIRS];
+        for (pair, row) in rows.iter_mut().enumerate() {
+            let y = (above + 2 * pair as i32) as f32;
+            let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, y);
+            *row = row_of(simd, &b.depth, lane, fy);
+        }
+        let (nearest, farthest) = (f32x16::splat(simd, b.z_min[lane]), f32x16::splat(simd, b.z_max[lane]));
+        let (mut tested, mut passed) = (0, 0);
+        for bx in (0..8).filter(|bx| active >> bx & 1 == 1) {
+            let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (left + 8 * bx) as f32);
+            let block = (8 * by + bx) as usize & 63;
+            let is_full = full >> bx & 1 == 1;
+            let mut edges = edges_at(simd, &*self.batch, lane, lanes, [8 * bx, 8 * by + 2 * top]);
+            let mut written = 0;
+            for pair in top..=bottom {
+                let inside = if is_full {
+                    mask32x16::splat(simd, true)
+                } else {
+                    self.inside(simd, &edges, [8 * bx, 8 * by + 2 * pair])
+                };
+                let z = along(simd, &self.batch.depth, lane, rows[pair as usize % PAIRS], fx);
+                let z = z.max(nearest).min(farthest);
+                let plane = &mut self.buffer.depth[block][pair as usize % PAIRS];
+                let stored = f32x16::load_array_ref(simd, plane);
+                let pass = inside & passes(z, stored);
+                pass.select(z, stored).store_array(plane);
+                tested += inside.to_bitmask().count_ones();
+                written += pass.to_bitmask().count_ones();
+                for (k, edge) in edges.iter_mut().enumerate() {
+                    *edge += i32x16::splat(simd, self.batch.edge_dy[k][lane].wrapping_mul(2));
+                }
+            }
+            passed += written;
+            self.buffer.written |= u64::from(written != 0) << block;
+        }
+        self.counts.tested += u64::from(tested);
+        self.counts.passed += u64::from(passed);
+    }
+
+    /// The lanes where no edge is negative and that may be written.
+    #[inline(always)]
+    fn inside<S: Simd>(&self, simd: S, edges: &[i32x16<S>; 3], [x, y]: [i32; 2]) -> mask32x16<S> {
+        let inside = (edges[0] | edges[1] | edges[2]).simd_ge(i32x16::splat(simd, 0));
+        if self.partial { inside & self.within_bounds(simd, x, y) } else { inside }
+    }
+}
+
+/// The edges of a triangle at the vector of this column and row of the tile.
+#[inline(always)]
+fn edges_at<S: Simd>(
+    simd: S,
+    b: &Batch,
+    lane: usize,
+    lanes: &[i32x16<S>; 3],
+    [x, y]: [i32; 2],
+) -> [i32x16<S>; 3] {
+    let mut edges = *lanes;
+    for (k, edge) in edges.iter_mut().enumerate() {
+        let (dx, dy) = (b.edge_dx[k][lane].wrapping_mul(x), b.edge_dy[k][lane].wrapping_mul(y));
+        *edge += i32x16::splat(simd, b.edge[k][lane].wrapping_add(dx).wrapping_add(dy));
+    }
+    edges
+}
+
+#[inline(always)]
+fn less<S: Simd>(new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+    new.simd_lt(stored)
+}
+
+#[inline(always)]
+fn less_equal<S: Simd>(new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+    new.simd_le(stored)
+}
+
+#[inline(always)]
+fn greater<S: Simd>(new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+    new.simd_gt(stored)
+}
+
+#[inline(always)]
+fn greater_equal<S: Simd>(new: f32x16<S>, stored: f32x16<S>) -> mask32x16<S> {
+    new.simd_ge(stored)
+}
