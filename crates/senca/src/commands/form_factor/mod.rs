@@ -26,6 +26,9 @@ pub(crate) struct Arguments {
     /// perpendicular W H1 H2: W x H1 and W x H2 sharing the edge W at a right angle;
     /// tilted W H1 H2 DEGREES: the same at another angle;
     /// disc R1 R2 D: two discs facing on one axis;
+    /// patch-sphere R D DEGREES: a small patch and a sphere, so far from its normal;
+    /// disc-sphere R1 R2 D: a disc and a sphere on its axis;
+    /// spheres R1 R2 D: two spheres;
     /// SCENE: all patches of a scene or model; - is standard input
     #[arg(value_name = "PAIR|SCENE", required = true, num_args = 1.., allow_negative_numbers = true)]
     what: Vec<String>,

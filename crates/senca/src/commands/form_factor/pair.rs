@@ -15,6 +15,9 @@ pub(super) enum Kind {
     Perpendicular,
     Tilted,
     Disc,
+    PatchSphere,
+    DiscSphere,
+    Spheres,
 }
 
 /// Two shapes, as patches.
@@ -28,12 +31,27 @@ pub(super) struct Pair {
     pub(super) exact: f64,
 }
 
+/// Rows of patches from pole to pole of a sphere, and patches in each.
+const ROWS: usize = 12;
+const COLUMNS: usize = 24;
+
+/// Edge of the square that stands for a point, as a share of the distance of what it sees.
+const SMALL: f64 = 1e-3;
+
 /// Rings and sectors that a disc is divided in.
 const RINGS: usize = 3;
 const SECTORS: usize = 32;
 
 impl Kind {
-    pub(super) const ALL: [Self; 4] = [Self::Parallel, Self::Perpendicular, Self::Tilted, Self::Disc];
+    pub(super) const ALL: [Self; 7] = [
+        Self::Parallel,
+        Self::Perpendicular,
+        Self::Tilted,
+        Self::Disc,
+        Self::PatchSphere,
+        Self::DiscSphere,
+        Self::Spheres,
+    ];
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -41,6 +59,9 @@ impl Kind {
             Self::Perpendicular => "perpendicular",
             Self::Tilted => "tilted",
             Self::Disc => "disc",
+            Self::PatchSphere => "patch-sphere",
+            Self::DiscSphere => "disc-sphere",
+            Self::Spheres => "spheres",
         }
     }
 
@@ -50,7 +71,8 @@ impl Kind {
             Self::Parallel => &["W", "H", "D"],
             Self::Perpendicular => &["W", "H1", "H2"],
             Self::Tilted => &["W", "H1", "H2", "DEGREES"],
-            Self::Disc => &["R1", "R2", "D"],
+            Self::PatchSphere => &["R", "D", "DEGREES"],
+            Self::Disc | Self::DiscSphere | Self::Spheres => &["R1", "R2", "D"],
         }
     }
 
@@ -61,6 +83,18 @@ impl Kind {
             (Self::Parallel, &[w, h, d]) => parallel(w, h, d),
             (Self::Perpendicular, &[w, h1, h2]) => perpendicular(w, h1, h2),
             (Self::Tilted, &[w, h1, h2, degrees]) => tilted(w, h1, h2, degrees),
+            (Self::PatchSphere, &[r, d, degrees]) => {
+                apart(r, d)?;
+                patch_sphere(r, d, degrees)
+            }
+            (Self::DiscSphere, &[r1, r2, d]) => {
+                apart(r2, d)?;
+                disc_sphere(r1, r2, d)
+            }
+            (Self::Spheres, &[r1, r2, d]) => {
+                apart(r1 + r2, d)?;
+                spheres(r1, r2, d)
+            }
             (_, numbers) => disc(numbers[0], numbers[1], numbers[2]),
         })
     }
@@ -84,6 +118,16 @@ impl Kind {
             Err(_) => Err(Failure::usage(format!("{name} is '{text}', which is not a number"))),
         };
         texts.iter().zip(names).map(number).collect()
+    }
+}
+
+/// Refuses what lies in a sphere.
+fn apart(least: f64, distance: f64) -> Result<(), Failure> {
+    match distance >= least {
+        true => Ok(()),
+        false => {
+            Err(Failure::usage(format!("D is {distance}, but must be at least {least}: one is in the other")))
+        }
     }
 }
 
@@ -150,4 +194,66 @@ fn disc_patches(radius: f64, place: impl Fn(f64, f64) -> DVec3) -> Vec<PatchPoly
         PatchPolygon::quad([at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)])
     };
     (0..RINGS).flat_map(|ring| (0..SECTORS).map(move |k| (ring, k))).map(|(ring, k)| patch(ring, k)).collect()
+}
+
+fn patch_sphere(r: f64, d: f64, degrees: f64) -> Pair {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let half = 0.5 * SMALL * d;
+    Pair {
+        title: format!(
+            "a small patch and a sphere of radius {r}, its centre at distance {d} and {degrees} degrees from the \
+             patch's normal; as a square of edge {} and {} patches with the sphere's area",
+            2.0 * half,
+            ROWS * COLUMNS
+        ),
+        from: rectangle(DVec3::new(-half, -half, 0.0), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half),
+        to: sphere_patches(r, DVec3::new(sin, 0.0, cos) * d),
+        exact: closed_form::point_to_sphere(r, d, degrees.to_radians()),
+    }
+}
+
+fn disc_sphere(r1: f64, r2: f64, d: f64) -> Pair {
+    Pair {
+        title: format!(
+            "a disc of radius {r1} and a sphere of radius {r2} on its axis, its centre at distance {d}; as \
+             polygons with their areas, of {SECTORS} corners and in {} patches",
+            ROWS * COLUMNS
+        ),
+        from: disc_patches(r1, |x, y| DVec3::new(x, y, 0.0)),
+        to: sphere_patches(r2, DVec3::Z * d),
+        exact: closed_form::disc_to_sphere(r1, r2, d),
+    }
+}
+
+fn spheres(r1: f64, r2: f64, d: f64) -> Pair {
+    Pair {
+        title: format!(
+            "spheres of radius {r1} and {r2}, centres at distance {d}; each as {} patches with its area",
+            ROWS * COLUMNS
+        ),
+        from: sphere_patches(r1, DVec3::ZERO),
+        to: sphere_patches(r2, DVec3::X * d),
+        exact: closed_form::sphere_to_sphere(r1, r2, d),
+    }
+}
+
+/// Rows of quadrilaterals around z, and triangles at the poles; they have the area of the sphere, so they
+/// hide as much as it does, on average over all directions.
+fn sphere_patches(radius: f64, center: DVec3) -> Vec<PatchPolygon> {
+    let patches = |radius: f64| -> Vec<PatchPolygon> {
+        let at = |row: usize, column: usize| {
+            let (sin, cos) = (PI * row as f64 / ROWS as f64).sin_cos();
+            let (y, x) = (TAU * (column % COLUMNS) as f64 / COLUMNS as f64).sin_cos();
+            let ring = if row == 0 || row == ROWS { 0.0 } else { sin };
+            center + radius * DVec3::new(ring * x, ring * y, cos)
+        };
+        let patch = |row: usize, k: usize| match row {
+            0 => PatchPolygon::triangle([at(0, 0), at(1, k), at(1, k + 1)]),
+            last if last == ROWS - 1 => PatchPolygon::triangle([at(row, k), at(ROWS, 0), at(row, k + 1)]),
+            _ => PatchPolygon::quad([at(row, k), at(row + 1, k), at(row + 1, k + 1), at(row, k + 1)]),
+        };
+        (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |k| (row, k))).map(|(row, k)| patch(row, k)).collect()
+    };
+    let area: f64 = patches(1.0).iter().map(|patch| patch.normal_and_area().1).sum();
+    patches(radius * (4.0 * PI / area).sqrt())
 }
