@@ -25,6 +25,7 @@ use senca_scene::{Attenuation, LightKind, Scene};
 use senca_shading::{Lamp, ShadingLight, distance_attenuation};
 
 use crate::form_factor::point_to_polygon;
+use crate::open_parts::OpenParts;
 use crate::{ElementMesh, Occluders, PatchPolygon, RadiosityError};
 use sky::Sky;
 pub(crate) use sky::cosine_direction;
@@ -179,6 +180,33 @@ impl DirectLight {
         let corners = shape.corners().iter().take(if self.settings.depth > 0 { 4 } else { 0 });
         let seen = corners.fold(middle, |seen, &c| seen.including(light(c.lerp(center, CORNER_INSET))));
         self.mean_over(&whole, seen, 0, &light)
+    }
+
+    /// Light on the open part of an element of `mesh`.
+    pub(crate) fn on_open_part(
+        &self,
+        occluders: &Occluders,
+        mesh: &ElementMesh,
+        open: &OpenParts,
+        element: u32,
+    ) -> DirectSample {
+        if mesh.elements()[element as usize].open <= 0.0 {
+            return DirectSample::default();
+        }
+        let Some(part) = open.get(mesh, element) else {
+            return self.on_element(occluders, mesh, element);
+        };
+        if let Some(shape) = &part.shape {
+            return self.on(occluders, shape, mesh.normal(element));
+        }
+        let samples =
+            part.triangles().map(|(shape, share)| (self.on(occluders, &shape, mesh.normal(element)), share));
+        let join = |(all, share): (DirectSample, f64), (one, more): (DirectSample, f64)| {
+            let mean = all.mean + one.mean * more as f32;
+            let seen = if share > 0.0 { all.including(one.least).including(one.most) } else { one };
+            (DirectSample { mean, ..seen }, share + more)
+        };
+        samples.fold((DirectSample::default(), 0.0), join).0
     }
 
     /// Light on an element of `mesh`.

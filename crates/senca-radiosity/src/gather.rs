@@ -24,6 +24,7 @@ use senca_math::glam::DVec3;
 use senca_math::{Cancelled, Control, LinearRgb};
 
 use crate::direct::cosine_direction;
+use crate::open_parts::has_sight;
 use crate::{DirectLight, ElementMesh, Occluders, RadiosityError, Solution};
 use cache::ReflectedGather;
 use direct::DirectGather;
@@ -208,30 +209,38 @@ pub fn regather_reflected(
         control.check()?;
         Ok(gather_on_leaf(solution, occluders, leaf, rays))
     };
-    let found: Result<Vec<LinearRgb>, Cancelled> = leaves.par_iter().with_min_len(16).map(on_leaf).collect();
+    let found: Result<Vec<Option<LinearRgb>>, Cancelled> =
+        leaves.par_iter().with_min_len(16).map(on_leaf).collect();
     for (&leaf, light) in leaves.iter().zip(found?) {
-        solution.incident[leaf as usize] = solution.direct[leaf as usize] + light;
+        if let Some(light) = light {
+            solution.incident[leaf as usize] = solution.direct[leaf as usize] + light;
+        }
     }
     solution.pull();
     Ok(())
 }
 
-/// Mean of the reflected light over a leaf.
-fn gather_on_leaf(solution: &Solution, occluders: &Occluders, leaf: u32, rays: u32) -> LinearRgb {
+/// Mean of the reflected light over the open part of a leaf, if any is found.
+fn gather_on_leaf(solution: &Solution, occluders: &Occluders, leaf: u32, rays: u32) -> Option<LinearRgb> {
     let (shape, normal) = (solution.mesh.shape(leaf), solution.mesh.normal(leaf));
     let frame = Frame::of(normal);
     let key = u64::from(leaf) << 32;
+    let is_cut = solution.mesh.elements()[leaf as usize].open < 1.0;
     let light = |ray: u32| {
         let [a, b] = [mix(key | u64::from(ray)), mix(!(key | u64::from(ray)))];
         let unit = |bits: u64| f64::from(bits as u32) / 4_294_967_296.0;
         let ring = (f64::from(ray) + unit(b)) / f64::from(rays);
         let part = (f64::from(ray) * 0.618_033_988_749_895 + unit_hash(key)).fract();
         let place = shape.place(unit(a), unit(a >> 32));
-        reflected_along(solution, occluders, place, frame.cosine_weighted(ring, part))
-            .map_or(LinearRgb::BLACK, |met| met.light)
+        if is_cut && !has_sight(&solution.mesh, occluders, place, normal) {
+            return None;
+        }
+        let met = reflected_along(solution, occluders, place, frame.cosine_weighted(ring, part));
+        Some(met.map_or(LinearRgb::BLACK, |met| met.light))
     };
-    let sum = (0..rays).fold(LinearRgb::BLACK, |sum, ray| sum + light(ray));
-    sum * (rays.max(1) as f32).recip()
+    let found = (0..rays).filter_map(light);
+    let (sum, count) = found.fold((LinearRgb::BLACK, 0u32), |(sum, n), light| (sum + light, n + 1));
+    (count > 0).then(|| sum * (count as f32).recip())
 }
 
 /// What a ray meets.

@@ -7,7 +7,8 @@
 //! 3. An oracle looks at each link: if it may be wrong by more than a threshold of power, one of its
 //!    ends is divided, and links of the parts take its place ([`oracle`], [`refine`]).
 //! 4. Light is gathered along the links at every node, pushed down to the leaves, where it is turned
-//!    into radiosity, and pulled up as means weighted by area, until little changes ([`exchange`]).
+//!    into radiosity, and pulled up as means weighted by area, until little changes ([`exchange`]). What
+//!    bounces would take long for is found from the last of them ([`mixing`]).
 //! 5. Then the threshold is lowered, and the links are looked at again with what is known of the light
 //!    by then: links of dark sources stay coarse (multigridding).
 //!
@@ -21,6 +22,7 @@ mod exchange;
 pub(crate) mod facet;
 mod link;
 mod lost;
+mod mixing;
 mod moments;
 pub(crate) mod node;
 mod oracle;

@@ -19,6 +19,7 @@ mod lux;
 mod mesh;
 mod nodes;
 mod occluders;
+mod open_parts;
 mod patch_polygon;
 mod saved;
 mod solution;

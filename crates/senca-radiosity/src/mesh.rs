@@ -83,6 +83,9 @@ pub struct Element {
     pub area: f64,
     /// Centroid.
     pub center: DVec3,
+    /// Share of the area that light can reach, in [0, 1]: less than 1 where a body stands on it, or it
+    /// goes on in one. Light that is said to arrive at an element arrives at its open part.
+    pub open: f32,
 }
 
 /// Polygons and elements over a scene, in world space. Elements `0..polygons().len()` are the roots.
@@ -111,6 +114,12 @@ impl Element {
     #[must_use]
     pub const fn is_leaf(&self) -> bool {
         self.parts == 0
+    }
+
+    /// Area of the open part, in square world units.
+    #[must_use]
+    pub fn open_area(&self) -> f64 {
+        self.area * f64::from(self.open)
     }
 
     /// Numbers of its parts; none for a leaf.
@@ -180,6 +189,11 @@ impl ElementMesh {
     pub fn surface(&self, element: u32) -> &RadiantSurface {
         let polygon = self.elements[element as usize].polygon;
         &self.surfaces[self.polygons[polygon as usize].surface as usize]
+    }
+
+    /// Sets the share of an element that light can reach, in [0, 1].
+    pub fn set_open(&mut self, element: u32, share: f32) {
+        self.elements[element as usize].open = share;
     }
 
     /// Lets a share of light pass through a surface, per channel in [0, 1].

@@ -14,7 +14,8 @@
 //! 3. On other meshes the same straight line is drawn, from the mean X of the inner vertices that most
 //!    of the adjoining elements share, through the mean of the elements in the mean of their middles,
 //!    to the vertex. Faces without inner vertices have nothing to draw it from and keep the mean.
-//! 4. Extrapolated values below 0 are set to 0 ([`Extrapolation::Clamped`]).
+//! 4. Elements that lie wholly in the dark of a body ([`crate::Element::open`]) do not count.
+//! 5. Extrapolated values below 0 are set to 0 ([`Extrapolation::Clamped`]).
 
 use std::collections::HashMap;
 
@@ -48,6 +49,8 @@ pub struct NodeTransfer {
     /// How vertices on borders are reached.
     lines: Vec<Option<Line>>,
     border: Vec<bool>,
+    /// By element: whether none of it is open.
+    hidden: Vec<bool>,
 }
 
 /// The line to a vertex on a border: from the mean of inner vertices through the mean of the elements.
@@ -77,6 +80,7 @@ impl NodeTransfer {
             leaves: adjoining.leaves,
             lines: Vec::new(),
             border: adjoining.border,
+            hidden: mesh.elements().iter().map(|element| element.open <= 0.0).collect(),
         };
         transfer.lines = (0..mesh.positions().len() as u32).map(|v| transfer.line_to(mesh, v)).collect();
         transfer
@@ -115,9 +119,10 @@ impl NodeTransfer {
     }
 
     fn mean(&self, vertex: u32, values: &[LinearRgb]) -> LinearRgb {
-        let leaves = self.adjoining(vertex);
-        let sum = leaves.iter().fold(LinearRgb::BLACK, |sum, &leaf| sum + values[leaf as usize]);
-        if leaves.is_empty() { sum } else { sum * (leaves.len() as f32).recip() }
+        let open = self.adjoining(vertex).iter().filter(|&&leaf| !self.hidden[leaf as usize]);
+        let (sum, count) = open
+            .fold((LinearRgb::BLACK, 0u32), |(sum, count), &leaf| (sum + values[leaf as usize], count + 1));
+        if count == 0 { sum } else { sum * (count as f32).recip() }
     }
 
     /// The line to a vertex on a border, where there is one.

@@ -164,6 +164,12 @@ impl Occluders {
         2.0 * (self.radius + place.distance(self.center))
     }
 
+    /// The middle of all polygons' bounds.
+    #[must_use]
+    pub const fn center(&self) -> DVec3 {
+        self.center
+    }
+
     /// How near to a plane a place counts as in it, in world units.
     #[must_use]
     pub const fn tolerance(&self) -> f64 {

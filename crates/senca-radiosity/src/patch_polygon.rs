@@ -52,6 +52,13 @@ impl PatchPolygon {
         ((a + b + c) * first + (a + c + d) * second) / (3.0 * (first + second))
     }
 
+    /// The same seen from its other side.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let [a, b, c, d] = self.corners;
+        if self.count == 3 { Self::triangle([c, b, a]) } else { Self::quad([d, c, b, a]) }
+    }
+
     /// The polygon in four at the middles of its edges.
     #[must_use]
     pub fn quarters(&self) -> [Self; 4] {

@@ -32,12 +32,13 @@ use bytes::{Reader, Writer, checksum};
 pub use fingerprint::light_fingerprint;
 
 const MAGIC: &[u8; 8] = b"SENCALIT";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const CHECKSUM: usize = 8;
 const VERTEX: usize = 48;
 const SURFACE: usize = 45;
 const POLYGON: usize = 20;
 const ATTRIBUTES: usize = 128;
+const OPEN: usize = 8;
 const LIGHT: usize = 24;
 
 /// Why a saved solution cannot be used.
@@ -75,6 +76,7 @@ impl Solution {
             seed.polygons.len(),
             seed.attributes.len(),
             seed.divided.len(),
+            seed.open.len(),
             elements,
         ] {
             out.u32(count as u32);
@@ -87,6 +89,10 @@ impl Solution {
         }
         seed.attributes.iter().flatten().for_each(|corner| write_attributes(&mut out, corner));
         seed.divided.iter().for_each(|&element| out.u32(element));
+        for &(element, share) in &seed.open {
+            out.u32(element);
+            out.bytes(&share.to_le_bytes());
+        }
         let of = |values: &[LinearRgb], element: usize| values.get(element).copied().unwrap_or_default();
         for element in 0..elements {
             out.color(of(&self.incident, element));
@@ -122,17 +128,18 @@ impl Solution {
 
 /// All behind the fingerprint.
 fn read_body(reader: &mut Reader<'_>) -> Result<Solution, SavedSolutionError> {
-    let mut counts = [0; 6];
+    let mut counts = [0; 7];
     for count in &mut counts {
         *count = reader.u32().ok_or(TOO_SHORT)? as usize;
     }
-    let [vertices, surfaces, polygons, attributes, divided, elements] = counts;
+    let [vertices, surfaces, polygons, attributes, divided, open, elements] = counts;
     let report = read_report(reader).ok_or(TOO_SHORT)?;
     let needed = VERTEX * vertices
         + SURFACE * surfaces
         + POLYGON * polygons
         + ATTRIBUTES * attributes
         + 4 * divided
+        + OPEN * open
         + LIGHT * elements
         + CHECKSUM;
     if reader.left() != needed {
@@ -145,6 +152,7 @@ fn read_body(reader: &mut Reader<'_>) -> Result<Solution, SavedSolutionError> {
         polygons: read_many(polygons, || Some((reader.u32x4()?, reader.u32()?)))?,
         attributes: read_many(attributes, || read_attributes(reader))?,
         divided: read_many(divided, || reader.u32())?,
+        open: read_many(open, || Some((reader.u32()?, reader.share()?)))?,
     };
     let mesh = ElementMesh::of_seed(&seed, elements).filter(|mesh| mesh.elements().len() == elements);
     let mesh = mesh.ok_or(SavedSolutionError::Damaged("its mesh does not hold together"))?;

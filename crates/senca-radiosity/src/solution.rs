@@ -32,7 +32,7 @@ pub struct SolveReport {
 /// Light on the elements of a mesh: the result of every solver, seen from nowhere in particular.
 ///
 /// The arrays have an entry for each element; that of a divided element is the mean over its parts,
-/// weighted by area. All values are in the unit of pictures.
+/// weighted by open area. All values are in the unit of pictures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solution {
     /// The elements.
@@ -65,7 +65,7 @@ impl Solution {
         exposed
     }
 
-    /// Sets the values of divided elements to the means over their parts, weighted by area.
+    /// Sets the values of divided elements to the means over their parts, weighted by open area.
     pub fn pull(&mut self) {
         for values in [&mut self.incident, &mut self.direct] {
             // Parts have higher numbers than what they are part of.
@@ -75,7 +75,7 @@ impl Solution {
                     continue;
                 }
                 let parts = whole.part_numbers().map(|part| part as usize);
-                let area = |part: usize| self.mesh.elements()[part].area as f32;
+                let area = |part: usize| self.mesh.elements()[part].open_area() as f32;
                 let sum = parts.clone().fold(LinearRgb::BLACK, |sum, part| sum + values[part] * area(part));
                 let total: f32 = parts.map(area).sum();
                 values[element] = if total > 0.0 { sum * total.recip() } else { LinearRgb::BLACK };

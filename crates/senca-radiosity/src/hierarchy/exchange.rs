@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use senca_math::glam::{DVec3, Vec3, Vec4};
+use smallvec::SmallVec;
 
 use super::cluster::Clusters;
 use super::link::Link;
@@ -67,7 +68,7 @@ impl Network {
     pub(super) fn gather(&self, parts: &Parts<'_>, state: &State) -> Vec<Vec4> {
         let arrivals = self.arrivals(parts, state);
         let polygons = parts.mesh.polygons().len();
-        let mut light: Vec<Vec4> = (0..parts.mesh.elements().len())
+        let own: Vec<Vec4> = (0..parts.mesh.elements().len())
             .into_par_iter()
             .with_min_len(GRAIN)
             .map(|element| {
@@ -78,11 +79,19 @@ impl Network {
                 if element < polygons { own + self.at_polygon(element, parts, &arrivals) } else { own }
             })
             .collect();
-        for element in polygons..light.len() {
-            let above = light[parts.mesh.elements()[element].parent as usize];
-            light[element] += above;
-        }
-        light
+        let elements = parts.mesh.elements();
+        let with_above = |element: usize| {
+            let mut path: SmallVec<[Vec4; 24]> = SmallVec::new();
+            let mut at = element;
+            while at >= polygons {
+                path.push(own[at]);
+                at = elements[at].parent as usize;
+            }
+            path.iter().rev().fold(own[at], |sum, &more| sum + more)
+        };
+        let light =
+            |element: usize| if elements[element].is_leaf() { with_above(element) } else { own[element] };
+        (0..own.len()).into_par_iter().with_min_len(GRAIN).map(light).collect()
     }
 
     fn at_element(&self, element: usize, parts: &Parts<'_>, state: &State) -> Vec4 {
@@ -170,7 +179,7 @@ fn arrival(receiver: Node, source: Node, weight: f32, parts: &Parts<'_>, state: 
 fn facet_of(node: Node, parts: &Parts<'_>) -> Option<Facet> {
     match node.as_lamp() {
         Some(lamp) => Some(parts.lamps[lamp as usize]),
-        None => node.as_element().map(|element| Facet::of(parts.mesh, element)),
+        None => node.as_element().map(|element| Facet::of_share(parts.mesh, element)),
     }
 }
 

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use senca_math::glam::DVec3;
 use smallvec::SmallVec;
 
+use crate::open_parts::OpenParts;
 use crate::{ElementMesh, PatchPolygon};
 
 /// From this many radii on a polygon counts as small: the share of what is seen of it is off by less
@@ -23,10 +24,13 @@ const TO_THE_BORDER: f64 = 1.732_050_807_568_877_2;
 pub(crate) struct Facet {
     pub(crate) shape: PatchPolygon,
     pub(crate) normal: DVec3,
+    /// Of what of it is open.
     pub(crate) area: f64,
     pub(crate) center: DVec3,
     /// Distance of the farthest corner from the center.
     pub(crate) radius: f64,
+    /// Share of the shape that is open.
+    open: f64,
 }
 
 /// Mean share of the hemisphere and how far single places are from each other.
@@ -43,6 +47,22 @@ impl Facet {
         Self::new(mesh.shape(element), mesh.normal(element), stored.area, stored.center)
     }
 
+    /// The open part of an element: its own shape where that is simple, else that of the element, of which
+    /// only a share counts.
+    pub(super) fn of_open(mesh: &ElementMesh, parts: &OpenParts, element: u32) -> Self {
+        match parts.get(mesh, element).and_then(|part| part.shape) {
+            Some(shape) => Self::of_polygon(shape),
+            None => Self::of_share(mesh, element),
+        }
+    }
+
+    /// The shape of an element, of which only the open share counts.
+    pub(super) fn of_share(mesh: &ElementMesh, element: u32) -> Self {
+        let whole = Self::of(mesh, element);
+        let open = f64::from(mesh.elements()[element as usize].open);
+        Self { area: whole.area * open, open, ..whole }
+    }
+
     pub(crate) fn of_polygon(shape: PatchPolygon) -> Self {
         let (normal, area) = shape.normal_and_area();
         Self::new(shape, normal, area, shape.center())
@@ -50,7 +70,7 @@ impl Facet {
 
     fn new(shape: PatchPolygon, normal: DVec3, area: f64, center: DVec3) -> Self {
         let squared = shape.corners().iter().map(|p| p.distance_squared(center)).fold(0.0, f64::max);
-        Self { shape, normal, area, center, radius: squared.sqrt() }
+        Self { shape, normal, area, center, radius: squared.sqrt(), open: 1.0 }
     }
 
     /// Whether some of it is in front of the other, and some of the other in front of it.
@@ -93,16 +113,20 @@ impl Facet {
         if self.normal.dot(way) >= 0.0 {
             return 0.0;
         }
-        lambert_share(point, normal, self.shape.corners())
+        self.open * lambert_share(point, normal, self.shape.corners())
     }
 
     /// Mean over this of the share that `source` takes up, with how much it varies.
     pub(super) fn share_of(&self, source: &Self) -> Share {
-        let places = self.places();
+        self.share_at_all(&self.places(), source)
+    }
+
+    /// The same with `places`, of equal weight, for those of this.
+    pub(super) fn share_at_all(&self, places: &[DVec3], source: &Self) -> Share {
         // The middle tells apart what is the same at all places for the sake of symmetry.
         let middle = source.share_at(self.center, self.normal);
         let (mut sum, mut least, mut most) = (0.0, middle, middle);
-        for &place in &places {
+        for &place in places {
             let share = source.share_at(place, self.normal);
             (sum, least, most) = (sum + share, least.min(share), most.max(share));
         }

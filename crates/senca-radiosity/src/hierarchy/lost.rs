@@ -1,11 +1,12 @@
 //! Light that leaves the scene, or ends on backs.
 
 use rayon::prelude::*;
-use senca_math::glam::DVec2;
+use senca_math::glam::{DVec2, DVec3};
 
 use super::sight::mix;
 use super::state::State;
 use crate::gather::Frame;
+use crate::open_parts::OpenParts;
 use crate::{ElementMesh, Occluders};
 
 /// Rays of the smallest element, and how many all of the scene has in addition.
@@ -16,7 +17,7 @@ const EVEN: DVec2 = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053_3);
 
 /// Estimates for all leaves that have none what share of their light meets no front. Parts of elements
 /// that lose nothing lose nothing.
-pub(super) fn estimate_lost(state: &mut State, mesh: &ElementMesh, occluders: &Occluders) {
+pub(super) fn estimate_lost(state: &mut State, mesh: &ElementMesh, occluders: &Occluders, open: &OpenParts) {
     let total = mesh.area();
     for element in 0..mesh.elements().len() {
         let parent = mesh.elements()[element].parent as usize;
@@ -28,14 +29,15 @@ pub(super) fn estimate_lost(state: &mut State, mesh: &ElementMesh, occluders: &O
         }
     }
     let polygons = mesh.polygons().len();
-    let open = |&number: &usize| {
+    let wanted = |&number: &usize| {
         state.lost[number].is_nan() && (number < polygons || mesh.elements()[number].is_leaf())
     };
-    let wanted: Vec<usize> = (0..mesh.elements().len()).filter(open).collect();
+    let wanted: Vec<usize> = (0..mesh.elements().len()).filter(wanted).collect();
     let estimate = |&number: &usize| {
         let share = mesh.elements()[number].area / total;
         let rays = (RAYS[0] + RAYS[1] * share).ceil() as u32;
-        lost_share(mesh, occluders, number as u32, rays)
+        let place = |on: DVec2| open.place(mesh, number as u32, on.x, on.y);
+        lost_share(mesh, occluders, number as u32, rays, &place)
     };
     let found: Vec<f32> = wanted.par_iter().with_min_len(16).map(estimate).collect();
     for (&number, &share) in wanted.iter().zip(&found) {
@@ -43,8 +45,14 @@ pub(super) fn estimate_lost(state: &mut State, mesh: &ElementMesh, occluders: &O
     }
 }
 
-fn lost_share(mesh: &ElementMesh, occluders: &Occluders, element: u32, rays: u32) -> f32 {
-    let (shape, normal) = (mesh.shape(element), mesh.normal(element));
+fn lost_share(
+    mesh: &ElementMesh,
+    occluders: &Occluders,
+    element: u32,
+    rays: u32,
+    place: &impl Fn(DVec2) -> DVec3,
+) -> f32 {
+    let normal = mesh.normal(element);
     let frame = Frame::of(normal);
     let (first, second) = (mix(u64::from(element) + 1), mix(u64::from(element) ^ 0x9e37_79b9_7f4a_7c15));
     let unit = |bits: u64| f64::from(bits as u32) / 4_294_967_296.0;
@@ -55,7 +63,7 @@ fn lost_share(mesh: &ElementMesh, occluders: &Occluders, element: u32, rays: u32
         let round = (shifts[1] + DVec2::new(0.618_033_988_749_895, 0.414_213_562_373_095) * f64::from(*ray))
             .fract_gl();
         let direction = frame.cosine_weighted(round.x, round.y);
-        !occluders.closest(shape.place(on.x, on.y), direction).is_some_and(|hit| hit.front)
+        !occluders.closest(place(on), direction).is_some_and(|hit| hit.front)
     };
     (1..=rays).filter(is_lost).count() as f32 / rays as f32
 }

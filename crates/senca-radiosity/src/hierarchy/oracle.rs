@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 use senca_math::glam::DVec3;
 
 use super::exchange::Parts;
-use super::facet::Facet;
+use super::facet::{Facet, Share};
 use super::link::Link;
 use super::node::Node;
 use super::sight::Sight;
@@ -84,7 +84,7 @@ impl Oracle<'_> {
         if let Some(lamp) = node.as_lamp() {
             return Some(self.sight.lamps[lamp as usize]);
         }
-        node.as_element().map(|element| Facet::of(self.sight.mesh, element))
+        node.as_element().map(|element| Facet::of_open(self.sight.mesh, self.sight.open, element))
     }
 
     /// Two elements, or a lamp and an element.
@@ -95,10 +95,10 @@ impl Oracle<'_> {
         let bright = f64::from(brightness(self.state.radiance(link.source)));
         let threshold = self.threshold_of(link.source);
         if link.rays == 0 {
-            if !receiver.can_see(&source) {
+            if receiver.area <= 0.0 || source.area <= 0.0 || !receiver.can_see(&source) {
                 return Verdict::Drop;
             }
-            let share = receiver.share_of(&source);
+            let share = self.share_of(link.receiver, &receiver, &source);
             link.factor = share.mean as f32;
             // All places may be below a horizon that others are above of.
             let unseen = if share.mean > 0.0 { 0.0 } else { at_most(&receiver, &source) };
@@ -125,6 +125,15 @@ impl Oracle<'_> {
             self.cast(link, RAYS[3]);
         }
         verdict
+    }
+
+    /// Mean over the open part of the receiver of the share that the source takes up.
+    fn share_of(&self, node: Node, receiver: &Facet, source: &Facet) -> Share {
+        let Sight { mesh, open, .. } = self.sight;
+        match node.as_element().and_then(|element| open.get(mesh, element)) {
+            Some(part) if part.shape.is_none() => receiver.share_at_all(&part.places(), source),
+            _ => receiver.share_of(source),
+        }
     }
 
     /// A cluster with itself.

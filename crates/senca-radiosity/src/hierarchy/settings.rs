@@ -20,6 +20,9 @@ pub struct HierarchySettings {
     pub tolerance: f64,
     /// Exchanges of light per round at most. Default 200.
     pub max_iterations: u32,
+    /// Exchanges that the next one learns from, 0 to 16; with 0 each is a plain bounce of light, of which
+    /// bright closed rooms take hundreds. Default 4.
+    pub remembered: usize,
     /// Elements at most. Default 2^22.
     pub max_elements: usize,
     /// Links at most. Default 2^24.
@@ -35,6 +38,7 @@ impl Default for HierarchySettings {
             rounds: 4,
             tolerance: 1e-4,
             max_iterations: 200,
+            remembered: 4,
             max_elements: 1 << 22,
             max_links: 1 << 24,
         }
@@ -60,6 +64,9 @@ impl HierarchySettings {
         }
         if !positive(self.tolerance) {
             return refuse("tolerance", self.tolerance, "above 0 and finite");
+        }
+        if self.remembered > 16 {
+            return refuse("remembered exchanges", self.remembered as f64, "0 to 16");
         }
         if self.max_iterations == 0 {
             return refuse("iterations", 0.0, "at least 1");

@@ -5,6 +5,7 @@ use senca_math::glam::{DVec3, DVec4};
 use super::cluster::Clusters;
 use super::facet::Facet;
 use super::node::Node;
+use crate::open_parts::OpenParts;
 use crate::{ElementMesh, Occluders};
 
 /// Fractional parts of the multiples of these four spread evenly over the unit cube of four
@@ -26,6 +27,7 @@ pub(super) struct Sight<'a> {
     pub(super) clusters: &'a Clusters,
     pub(super) occluders: &'a Occluders,
     pub(super) lamps: &'a [Facet],
+    pub(super) open: &'a OpenParts,
 }
 
 /// A place on a surface, with the surface's normal.
@@ -74,7 +76,7 @@ impl Sight<'_> {
         let polygon = self.clusters.polygon_at(cluster, share);
         // What is left of the digits that chose the polygon is spread evenly enough.
         let along = (share * 4096.0 + v * 0.618_033_988_749_895).fract();
-        (self.mesh.shape(polygon).place(along, v), self.mesh.normal(polygon))
+        (self.open.place(self.mesh, polygon, along, v), self.mesh.normal(polygon))
     }
 
     /// Share of light that passes between two places.
@@ -108,7 +110,7 @@ impl Sight<'_> {
             }
             None => {
                 let element = node.index() as u32;
-                (self.mesh.shape(element).place(u, v), self.mesh.normal(element))
+                (self.open.place(self.mesh, element, u, v), self.mesh.normal(element))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The rounds of a solution.
 
-use senca_math::glam::Vec4;
+use rayon::prelude::*;
+use senca_math::glam::{DVec3, Vec4};
 use senca_math::{Control, LinearRgb};
 
 use super::cluster::Clusters;
@@ -8,13 +9,17 @@ use super::exchange::{Network, Parts};
 use super::facet::Facet;
 use super::link::Link;
 use super::lost::estimate_lost;
+use super::mixing::Mixing;
 use super::node::{MAX_NODES, Node};
 use super::oracle::{Oracle, Verdict};
 use super::refine::{Limits, apply, judge_all};
 use super::settings::HierarchySettings;
 use super::sight::Sight;
 use super::state::{State, brightness, rgb, rgb1};
-use crate::{DirectLight, DirectSample, ElementMesh, Occluders, RadiosityError, Solution, SolveReport};
+use crate::open_parts::{OpenParts, Surroundings};
+use crate::{
+    DirectLight, DirectSample, Element, ElementMesh, Occluders, RadiosityError, Solution, SolveReport,
+};
 
 /// Smallest edge of elements, as a share of the diagonal of the scene.
 const SMALLEST_EDGE: f64 = 1.0 / 400.0;
@@ -24,6 +29,12 @@ const MOST_CORRECTION: f32 = 2.0;
 
 /// Share of the tolerance below which a change is none.
 const STILL: f64 = 1e-3;
+
+/// Where less of the light is kept or lost at each exchange, there is no end to it that could be foreseen.
+const DIM: f64 = 1e-4;
+
+/// Elements that one task of a thread sums.
+const CHUNK: usize = 4096;
 
 /// Links that are judged between two looks at whether the caller wants to stop.
 const AT_ONCE: usize = 1 << 14;
@@ -68,6 +79,7 @@ struct Solver<'a> {
     mesh: ElementMesh,
     clusters: Clusters,
     occluders: Occluders,
+    open: OpenParts,
     /// Lamps that are matt rectangles, and the rest of them.
     facets: Vec<Facet>,
     others: DirectLight,
@@ -121,6 +133,7 @@ impl<'a> Solver<'a> {
             point_lit: Vec::new(),
             network: Network::default(),
             report: SolveReport::default(),
+            open: OpenParts::new(&mesh),
             mesh,
             clusters,
             occluders,
@@ -131,6 +144,8 @@ impl<'a> Solver<'a> {
             state,
             links,
         };
+        solver.follow_mesh();
+        solver.state.gather_moments(&solver.mesh, &solver.clusters);
         solver.power = solver.given_power();
         if !solver.power.is_finite() {
             return Err(RadiosityError::Setting {
@@ -151,6 +166,24 @@ impl<'a> Solver<'a> {
         f64::from(if (all.x + all.y + all.z).is_finite() { brightness(all) } else { f32::NAN })
     }
 
+    /// Learns of elements that are new.
+    fn follow_mesh(&mut self) {
+        self.state.follow_mesh(&self.mesh);
+        let (occluders, others, facets) = (&self.occluders, &self.others, &self.facets);
+        let sees = |place: DVec3, normal: DVec3, lamp: &Facet| {
+            let is_ahead = |corner: &&DVec3| (**corner - place).dot(normal) > 0.0;
+            let ahead = (place - lamp.center).dot(lamp.normal) > 0.0;
+            let mut ends = lamp.shape.corners().iter().filter(is_ahead);
+            ahead && ends.any(|end| occluders.visible(place, end.lerp(lamp.center, 0.1)))
+        };
+        let is_lit = |place: DVec3, normal: DVec3| {
+            facets.iter().any(|lamp| sees(place, normal, lamp))
+                || others.at(occluders, place, normal) != LinearRgb::BLACK
+        };
+        let around = Surroundings { clusters: &self.clusters, occluders, is_lit: &is_lit };
+        self.open.follow(&mut self.mesh, &around);
+    }
+
     fn parts(&self) -> Parts<'_> {
         Parts { mesh: &self.mesh, clusters: &self.clusters, lamps: &self.facets }
     }
@@ -165,7 +198,7 @@ impl<'a> Solver<'a> {
             }
             let lit = self.lit_by_lamps(first);
             if first == 0 {
-                let area = |element: usize| self.mesh.elements()[element].area as f32;
+                let area = |element: usize| self.mesh.elements()[element].open_area() as f32;
                 let roots = 0..self.mesh.polygons().len();
                 let cast: Vec4 = roots.map(|root| lit[root].0 * area(root)).sum();
                 self.power += f64::from(brightness(cast));
@@ -175,25 +208,27 @@ impl<'a> Solver<'a> {
             let end = self.mesh.elements().len();
             for (number, &(_, spread)) in (first..end).zip(&lit) {
                 let element = &self.mesh.elements()[number];
-                let wrong = f64::from(spread) * element.area > threshold && element.is_leaf();
+                let wrong = f64::from(spread) * element.open_area() > threshold && element.is_leaf();
                 if wrong && element.area > self.smallest_area && end < self.settings.max_elements {
                     self.mesh.divide(number as u32);
                 }
             }
             first = end;
+            self.follow_mesh();
         }
-        self.state.follow_mesh(&self.mesh);
     }
 
     /// Light of the other lamps on elements from `first` on, and how much it varies. Once the caller
     /// wants to stop, what was not looked at stays dark.
     fn lit_by_lamps(&self, first: usize) -> Vec<(Vec4, f32)> {
-        let wanted: Vec<u32> = (first as u32..self.mesh.elements().len() as u32).collect();
-        let lit = match self.others.is_empty() {
-            true => Err(RadiosityError::Cancelled),
-            false => self.others.on_elements(&self.occluders, &self.mesh, &wanted, self.control),
+        let wanted = first as u32..self.mesh.elements().len() as u32;
+        let on_element = |element: u32| {
+            if self.others.is_empty() || self.control.is_cancelled() {
+                return DirectSample::default();
+            }
+            self.others.on_open_part(&self.occluders, &self.mesh, &self.open, element)
         };
-        let lit = lit.unwrap_or_else(|_| vec![DirectSample::default(); wanted.len()]);
+        let lit: Vec<DirectSample> = wanted.into_par_iter().with_min_len(4).map(on_element).collect();
         lit.iter().map(|sample| (rgb1(sample.mean, 0.0), sample.spread())).collect()
     }
 
@@ -206,7 +241,7 @@ impl<'a> Solver<'a> {
             return false;
         }
         self.light_new_leaves();
-        estimate_lost(&mut self.state, &self.mesh, &self.occluders);
+        estimate_lost(&mut self.state, &self.mesh, &self.occluders, &self.open);
         let is_lamp = |source: Node| source.as_lamp().is_some();
         let lamps = Network::new(&self.links, &self.parts(), is_lamp);
         self.network = Network::new(&self.links, &self.parts(), |source| !is_lamp(source));
@@ -237,7 +272,7 @@ impl<'a> Solver<'a> {
                 let judged: Vec<(Link, Verdict)> = chunk.iter().copied().zip(verdicts).collect();
                 let (more, _) = apply(&mut self.mesh, &self.clusters, &judged, &mut kept, &limits);
                 next.extend(more);
-                self.state.follow_mesh(&self.mesh);
+                self.follow_mesh();
             }
             links = next;
         }
@@ -252,6 +287,7 @@ impl<'a> Solver<'a> {
                 clusters: &self.clusters,
                 occluders: &self.occluders,
                 lamps: &self.facets,
+                open: &self.open,
             },
             state: &self.state,
             threshold,
@@ -268,19 +304,23 @@ impl<'a> Solver<'a> {
     /// Light goes to and fro until little changes.
     fn exchange(&mut self, tolerance: f64) {
         (self.report.converged, self.settled) = (false, false);
+        let mut mixing = Mixing::new(if self.least_kept() > DIM { self.settings.remembered } else { 0 });
+        let weights = self.leaf_areas();
         for _ in 0..self.settings.max_iterations {
             if self.control.is_cancelled() {
                 return;
             }
             let before = self.state.radiosity.clone();
-            let incident = self.arriving();
-            self.scale = self.balance(&incident);
-            self.state.incident = incident.into_iter().map(|light| light * self.scale).collect();
+            let arriving = self.arriving();
+            self.scale = self.balance(&arriving);
+            let scale = self.scale;
+            let after: Vec<Vec4> = arriving.into_par_iter().map(|light| light * scale).collect();
+            let light = std::mem::replace(&mut self.state.incident, after);
             self.state.pull(&self.mesh);
             self.report.iterations += 1;
             self.report.residual = change(&before, &self.state.radiosity);
             if !self.report.residual.is_finite() {
-                self.state.radiosity = before;
+                (self.state.radiosity, self.state.incident) = (before, light);
                 return;
             }
             // The brightest may be far brighter than what it lights, so power has to agree too. Links that
@@ -292,7 +332,28 @@ impl<'a> Solver<'a> {
             if self.settled {
                 return;
             }
+            if mixing.remembers() {
+                self.state.incident = mixing.next(&light, &self.state.incident, &weights);
+                self.state.pull(&self.mesh);
+            }
         }
+    }
+
+    /// Share of the light that surfaces keep or lose at each exchange, on average; that of the channel
+    /// where it is least.
+    fn least_kept(&self) -> f64 {
+        let [kept, all] = self.sum_over_leaves(|number, element| {
+            let (area, lost) = (element.open_area(), self.state.lost[number]);
+            let reflected = self.mesh.surface(number as u32).reflectance * (1.0 - lost);
+            [area * (1.0 - doubled(rgb1(reflected, 0.0))), DVec3::splat(area)]
+        });
+        (kept / all).min_element()
+    }
+
+    /// Open areas of the leaves, by element; 0 for elements that are divided.
+    fn leaf_areas(&self) -> Vec<f32> {
+        let area = |e: &Element| if e.is_leaf() { e.open_area() as f32 } else { 0.0 };
+        self.mesh.elements().iter().map(area).collect()
     }
 
     /// Light from surfaces at all leaves. Where nothing is lost on the way out, all directions are
@@ -314,7 +375,7 @@ impl<'a> Solver<'a> {
     fn mean_radiosity(&self) -> Vec4 {
         let polygons = || {
             (0..self.mesh.polygons().len())
-                .map(|p| (self.state.radiosity[p], self.mesh.elements()[p].area as f32))
+                .map(|p| (self.state.radiosity[p], self.mesh.elements()[p].open_area() as f32))
         };
         let area: f32 = polygons().map(|(_, area)| area).sum();
         let mean: Vec4 =
@@ -325,20 +386,31 @@ impl<'a> Solver<'a> {
 
     /// Per channel, what is sent and not lost over what arrives.
     fn balance(&self, incident: &[Vec4]) -> Vec4 {
-        let (mut sent, mut arrives) = ([0.0f64; 3], [0.0f64; 3]);
-        for (number, element) in self.mesh.elements().iter().enumerate().filter(|(_, e)| e.is_leaf()) {
-            let kept = element.area * f64::from(1.0 - self.state.lost[number]);
-            for channel in 0..3 {
-                sent[channel] += kept * f64::from(self.state.radiosity[number][channel]);
-                arrives[channel] += element.area * f64::from(incident[number][channel]);
-            }
-        }
+        let [sent, arrives] = self.sum_over_leaves(|number, element| {
+            let (area, lost) = (element.open_area(), f64::from(self.state.lost[number]));
+            [doubled(self.state.radiosity[number]) * (area * (1.0 - lost)), doubled(incident[number]) * area]
+        });
         let most = f64::from(MOST_CORRECTION);
         let ratio = |channel: usize| {
             let ratio = sent[channel] / arrives[channel];
             if ratio.is_finite() { ratio.clamp(1.0 / most, most) as f32 } else { 1.0 }
         };
         Vec4::new(ratio(0), ratio(1), ratio(2), 1.0)
+    }
+
+    /// Sums of two values of the leaves, by chunks of a fixed size, so that the number of threads does not
+    /// matter.
+    fn sum_over_leaves(&self, value: impl Fn(usize, &Element) -> [DVec3; 2] + Sync) -> [DVec3; 2] {
+        let chunks = self.mesh.elements().par_chunks(CHUNK).enumerate();
+        let of_chunk = |(chunk, elements): (usize, &[Element])| {
+            let numbered = (chunk * CHUNK..).zip(elements).filter(|(_, element)| element.is_leaf());
+            numbered.fold([DVec3::ZERO; 2], |[a, b], (number, element)| {
+                let [more_a, more_b] = value(number, element);
+                [a + more_a, b + more_b]
+            })
+        };
+        let sums: Vec<[DVec3; 2]> = chunks.map(of_chunk).collect();
+        sums.iter().fold([DVec3::ZERO; 2], |[a, b], &[more_a, more_b]| [a + more_a, b + more_b])
     }
 
     /// Shows the solution to the caller.
@@ -350,7 +422,7 @@ impl<'a> Solver<'a> {
 
     /// The light so far; takes the mesh.
     fn solution(&mut self) -> Solution {
-        self.state.follow_mesh(&self.mesh);
+        self.follow_mesh();
         let direct = self.direct();
         let incident = self.state.incident.iter().zip(&self.state.lamp_light);
         let incident: Vec<LinearRgb> = incident.map(|(&light, &lamps)| rgb(light + lamps)).collect();
@@ -385,27 +457,28 @@ impl<'a> Solver<'a> {
 
     /// Power that is neither absorbed nor lost, as a share of what is given.
     fn energy_error(&self) -> f64 {
-        let (mut given, mut gone) = ([0.0f64; 3], [0.0f64; 3]);
-        for (number, element) in self.mesh.elements().iter().enumerate().filter(|(_, e)| e.is_leaf()) {
+        let color = |c: LinearRgb| DVec3::new(c.r.into(), c.g.into(), c.b.into());
+        let [given, gone] = self.sum_over_leaves(|number, element| {
             let surface = self.mesh.surface(number as u32);
-            let [emission, reflectance] = [surface.emission, surface.reflectance].map(|c| c.to_array());
-            let lost = f64::from(self.state.lost[number]);
-            for channel in 0..3 {
-                let lamps = f64::from(self.state.lamp_light[number][channel]);
-                let incident = f64::from(self.state.incident[number][channel]) + lamps;
-                let sent = f64::from(self.state.radiosity[number][channel]);
-                given[channel] += element.area * (f64::from(emission[channel]) + lamps);
-                gone[channel] +=
-                    element.area * ((1.0 - f64::from(reflectance[channel])) * incident + lost * sent);
-            }
-        }
-        let error = |(given, gone): (f64, f64)| if given > 0.0 { (gone / given - 1.0).abs() } else { 0.0 };
-        given.into_iter().zip(gone).map(error).fold(0.0, f64::max)
+            let (area, lost) = (element.open_area(), f64::from(self.state.lost[number]));
+            let lamps = doubled(self.state.lamp_light[number]);
+            let absorbed =
+                (1.0 - color(surface.reflectance)) * (doubled(self.state.incident[number]) + lamps);
+            let sent = doubled(self.state.radiosity[number]);
+            [area * (color(surface.emission) + lamps), area * (absorbed + lost * sent)]
+        });
+        let error = |c: usize| if given[c] > 0.0 { (gone[c] / given[c] - 1.0).abs() } else { 0.0 };
+        (0..3).map(error).fold(0.0, f64::max)
     }
 
     fn finish(mut self) -> Solution {
         self.solution()
     }
+}
+
+/// The colour in double precision.
+fn doubled(light: Vec4) -> DVec3 {
+    light.truncate().as_dvec3()
 }
 
 /// The largest change of a channel as a share of the largest value.

@@ -1,5 +1,6 @@
 //! Light on nodes during a solution.
 
+use rayon::prelude::*;
 use senca_math::LinearRgb;
 use senca_math::glam::{DVec3, Vec4};
 
@@ -13,6 +14,9 @@ use crate::ElementMesh;
 /// Clusters of up to so many polygons send what each of these sends. Moments would let some light out
 /// behind a wall.
 const FEW: usize = 16;
+
+/// Elements that one task of a thread takes at least.
+const GRAIN: usize = 2048;
 
 /// Light on all nodes. Values have four channels: red, green, blue, and one that is lit evenly by all
 /// surfaces, so that it counts the share of directions that links account for.
@@ -34,6 +38,17 @@ pub(super) struct State {
     pub(super) emitted: Vec<f32>,
     /// Of each lamp.
     pub(super) lamp_radiance: Vec<Vec4>,
+    /// Divided elements by level, of a mesh of `levels_of` elements.
+    levels: Vec<Vec<u32>>,
+    levels_of: usize,
+}
+
+/// Values of a divided element.
+struct Means {
+    radiosity: Vec4,
+    incident: Vec4,
+    lamp_light: Vec4,
+    spread: f32,
 }
 
 pub(super) fn rgb1(color: LinearRgb, fourth: f32) -> Vec4 {
@@ -94,7 +109,7 @@ impl State {
     pub(super) fn gather_moments(&mut self, mesh: &ElementMesh, clusters: &Clusters) {
         self.moments.fill(Moments::default());
         for polygon in 0..mesh.polygons().len() {
-            let power = self.radiosity[polygon] * mesh.elements()[polygon].area as f32;
+            let power = self.radiosity[polygon] * mesh.elements()[polygon].open_area() as f32;
             let cluster = clusters.cluster_of(polygon as u32) as usize;
             self.moments[cluster].add_polygon(power, mesh.polygons()[polygon].normal);
         }
@@ -104,30 +119,64 @@ impl State {
         }
     }
 
-    /// Sets the values of divided elements to the means of their leaves, and all radiosities.
+    /// Sets the values of divided elements to the means of their leaves, and all radiosities. All elements
+    /// of a level are means of those of the next, whatever thread computes them.
     pub(super) fn pull(&mut self, mesh: &ElementMesh) {
-        for number in (0..mesh.elements().len()).rev() {
-            let element = &mesh.elements()[number];
-            if element.is_leaf() {
-                let surface = mesh.surface(number as u32);
-                let incident = self.incident[number] + self.lamp_light[number];
-                let sent = rgb1(surface.emission, 1.0) + rgb1(surface.reflectance, 0.0) * incident;
-                self.radiosity[number] = sent;
-                self.spread[number] = 0.0;
-                continue;
+        self.light_leaves(mesh);
+        self.know_levels(mesh);
+        for level in self.levels.iter().rev() {
+            let means =
+                level.par_iter().with_min_len(GRAIN / 8).map(|&number| self.mean_of_parts(mesh, number));
+            let means: Vec<Means> = means.collect();
+            for (&number, means) in level.iter().zip(means) {
+                let number = number as usize;
+                self.radiosity[number] = means.radiosity;
+                self.incident[number] = means.incident;
+                self.lamp_light[number] = means.lamp_light;
+                self.spread[number] = means.spread;
             }
-            let parts = || element.part_numbers().map(|part| part as usize);
-            let scale = 1.0 / parts().map(|part| mesh.elements()[part].area as f32).sum::<f32>();
-            let scale = if scale.is_finite() { scale } else { 0.0 };
-            for values in [&mut self.radiosity, &mut self.incident, &mut self.lamp_light] {
-                let sum = parts().map(|part| values[part] * mesh.elements()[part].area as f32).sum::<Vec4>();
-                values[number] = sum * scale;
-            }
-            self.radiosity[number].w = 1.0;
-            let mean = self.radiosity[number];
-            let off = |part: usize| brightness((self.radiosity[part] - mean).abs()) + self.spread[part];
-            self.spread[number] = parts().map(off).fold(0.0, f32::max);
         }
+    }
+
+    fn light_leaves(&mut self, mesh: &ElementMesh) {
+        let light = self.incident.par_iter().zip(&self.lamp_light).with_min_len(GRAIN);
+        let sent = self.radiosity.par_iter_mut().zip(&mut self.spread).zip(light).enumerate();
+        sent.for_each(|(number, ((radiosity, spread), (&incident, &lamps)))| {
+            if mesh.elements()[number].is_leaf() {
+                let surface = mesh.surface(number as u32);
+                let reflected = rgb1(surface.reflectance, 0.0) * (incident + lamps);
+                (*radiosity, *spread) = (rgb1(surface.emission, 1.0) + reflected, 0.0);
+            }
+        });
+    }
+
+    /// Finds the divided elements by level, when there are new ones.
+    fn know_levels(&mut self, mesh: &ElementMesh) {
+        if self.levels_of == mesh.elements().len() {
+            return;
+        }
+        self.levels_of = mesh.elements().len();
+        self.levels.iter_mut().for_each(Vec::clear);
+        for (number, element) in (0..).zip(mesh.elements()).filter(|(_, element)| !element.is_leaf()) {
+            let level = usize::from(element.level);
+            if self.levels.len() <= level {
+                self.levels.resize(level + 1, Vec::new());
+            }
+            self.levels[level].push(number);
+        }
+    }
+
+    fn mean_of_parts(&self, mesh: &ElementMesh, number: u32) -> Means {
+        let parts = || mesh.elements()[number as usize].part_numbers().map(|part| part as usize);
+        let area = |part: usize| mesh.elements()[part].open_area() as f32;
+        let scale = 1.0 / parts().map(area).sum::<f32>();
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        let mean = |values: &[Vec4]| parts().map(|part| values[part] * area(part)).sum::<Vec4>() * scale;
+        let radiosity = mean(&self.radiosity).with_w(1.0);
+        let off = |part: usize| brightness((self.radiosity[part] - radiosity).abs()) + self.spread[part];
+        let open = parts().filter(|&part| mesh.elements()[part].open > 0.0);
+        let spread = open.map(off).fold(0.0, f32::max);
+        Means { radiosity, incident: mean(&self.incident), lamp_light: mean(&self.lamp_light), spread }
     }
 
     /// What a node sends in a direction: radiosity times area times cosine. Four channels.
@@ -156,7 +205,7 @@ impl State {
         }
         let by_polygon = |&polygon: &u32| {
             let cosine = parts.mesh.polygons()[polygon as usize].normal.dot(direction).max(0.0);
-            let area = parts.mesh.elements()[polygon as usize].area;
+            let area = parts.mesh.elements()[polygon as usize].open_area();
             self.radiosity[polygon as usize] * (area * cosine) as f32
         };
         polygons.iter().map(by_polygon).sum()

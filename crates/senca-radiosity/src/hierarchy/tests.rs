@@ -244,3 +244,68 @@ fn interruption_keeps_the_best_so_far() {
     assert_eq!(solution.incident, first.incident);
     assert!(solution.incident[2].g > 0.01 && rounds == 2);
 }
+
+/// A box seen from outside, at `origin`, turned about the vertical.
+fn block(origin: [f64; 3], size: [f64; 3], angle: f64) -> [Quad; 6] {
+    let turn = senca_math::glam::DMat3::from_rotation_y(angle);
+    room(size).map(|[a, b, c, d]| [d, c, b, a].map(|p| turn * p + DVec3::from_array(origin)))
+}
+
+/// A white furnace with a block: all that shines and reflects alike shows 2, whatever is in the room.
+fn furnace_with(block: [Quad; 6]) -> Solution {
+    let mut quads: Vec<(Quad, f32, f32)> = room([1.0; 3]).map(|wall| (wall, 0.5, 1.0)).to_vec();
+    quads.extend(block.map(|wall| (wall, 0.5, 1.0)));
+    solve(mesh_of(&quads), &HierarchySettings { threshold: 1e-4, ..HierarchySettings::default() })
+}
+
+#[test]
+fn the_floor_around_a_block_is_as_bright_as_elsewhere() {
+    // The block's walls run through elements of the floor, straight and askew; another enters it.
+    for (origin, angle) in [([0.33, 0.0, 0.29], 0.0), ([0.33, 0.0, 0.49], 0.3), ([0.33, -0.05, 0.49], 0.3)] {
+        let solution = furnace_with(block(origin, [0.31; 3], angle));
+        let mesh = &solution.mesh;
+        // The block's underside takes no part.
+        let is_seen =
+            |&leaf: &u32| mesh.normal(leaf).y > -0.5 || mesh.elements()[leaf as usize].center.y > 0.5;
+        let all: f64 =
+            mesh.leaves().filter(is_seen).map(|leaf| mesh.elements()[leaf as usize].open_area()).sum();
+        let expected = 6.0 + 4.0 * 0.31 * (0.31 + origin[1]);
+        assert!((all - expected).abs() < 1e-6, "{all} {expected}");
+        let cut =
+            mesh.leaves().filter(|&leaf| (1e-6..1.0).contains(&mesh.elements()[leaf as usize].open)).count();
+        assert!(cut > 20, "{cut}");
+        assert!(solution.report.converged && solution.report.energy_error < 1e-3, "{:?}", solution.report);
+        for leaf in mesh.leaves().filter(is_seen).filter(|&leaf| mesh.elements()[leaf as usize].open > 0.0) {
+            let (shown, element) = (solution.radiosity(leaf).g, &mesh.elements()[leaf as usize]);
+            assert!((shown - 2.0).abs() < 0.02, "{leaf} at {}: {shown} {}", element.center, element.open);
+        }
+    }
+}
+
+#[test]
+fn closed_rooms_of_bright_walls_come_to_rest_soon() {
+    for reflectance in [0.5, 0.9, 0.99] {
+        let walls = room([1.0, 1.0, 2.0]).map(|wall| (wall, reflectance, 1.0));
+        let solution = solve(mesh_of(&walls), &HierarchySettings::default());
+        assert!(solution.report.converged && solution.report.iterations < 40, "{:?}", solution.report);
+        let expected = 1.0 / (1.0 - reflectance);
+        for element in 0..solution.mesh.elements().len() as u32 {
+            let shown = solution.radiosity(element).g;
+            assert!((shown / expected - 1.0).abs() < 1e-4, "{reflectance}, {element}: {shown}");
+        }
+    }
+    // One lamp in a room whose walls keep a hundredth: nearly all of its light is reflected. What few
+    // exchanges find is what plain bounces come to.
+    let mut walls = room([2.0, 1.0, 1.5]).map(|wall| (wall, 0.99, 0.0)).to_vec();
+    walls.push((quad([0.9, 0.95, 0.6], [0.2, 0.0, 0.0], [0.0, 0.0, 0.3]), 0.0, 10.0));
+    walls.push((quad([0.9, 0.95, 0.6], [0.0, 0.0, 0.3], [0.2, 0.0, 0.0]), 0.99, 0.0));
+    let settings = HierarchySettings { threshold: 1e-3, rounds: 1, ..HierarchySettings::default() };
+    let plain = HierarchySettings { remembered: 0, max_iterations: 5000, tolerance: 1e-6, ..settings };
+    let [few, many] = [settings, plain].map(|settings| solve(mesh_of(&walls), &settings));
+    assert!(few.report.converged && few.report.energy_error < 1e-4, "{:?}", few.report);
+    assert!(few.report.iterations < 30 && many.report.iterations > 300, "{:?} {:?}", few.report, many.report);
+    for leaf in few.mesh.leaves() {
+        let [a, b] = [&few, &many].map(|solution| solution.radiosity(leaf).g);
+        assert!((a / b - 1.0).abs() < 2e-3, "{leaf}: {a} {b}");
+    }
+}

@@ -150,6 +150,7 @@ impl ElementMesh {
             level: 0,
             area: 0.0,
             center: DVec3::ZERO,
+            open: 1.0,
         });
         true
     }

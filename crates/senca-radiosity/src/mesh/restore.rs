@@ -16,6 +16,8 @@ pub(crate) struct MeshSeed {
     pub(crate) attributes: Vec<[CornerAttributes; 4]>,
     /// Elements that are divided, in the order of their division.
     pub(crate) divided: Vec<u32>,
+    /// Elements that are not wholly open, and what share of them is.
+    pub(crate) open: Vec<(u32, f32)>,
 }
 
 impl ElementMesh {
@@ -33,6 +35,7 @@ impl ElementMesh {
             polygons: polygons.map(|(polygon, root)| (root.vertices, polygon.surface)).collect(),
             attributes: self.attributes.clone(),
             divided,
+            open: (0..).zip(&self.elements).filter(|(_, e)| e.open < 1.0).map(|(i, e)| (i, e.open)).collect(),
         }
     }
 
@@ -64,6 +67,9 @@ impl ElementMesh {
             if !there || !mesh.divide(element) || mesh.elements.len() > max_elements {
                 return None;
             }
+        }
+        for &(element, share) in &seed.open {
+            mesh.elements.get_mut(element as usize)?.open = share;
         }
         Some(mesh)
     }

@@ -137,6 +137,11 @@ impl<'a> Reader<'a> {
         self.array().map(f32::from_le_bytes).filter(|v| v.is_finite())
     }
 
+    /// In [0, 1].
+    pub(super) fn share(&mut self) -> Option<f32> {
+        self.f32().filter(|v| (0.0..=1.0).contains(v))
+    }
+
     /// Finite.
     pub(super) fn vector(&mut self) -> Option<DVec3> {
         Some(DVec3::new(self.f64()?, self.f64()?, self.f64()?)).filter(|v| v.is_finite())

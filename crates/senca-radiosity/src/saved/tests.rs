@@ -14,6 +14,7 @@ fn solution() -> Solution {
     let mut mesh = ElementMesh::of_scene(&scene(), &settings).expect("a mesh");
     let deepest = mesh.leaves().last().expect("a leaf");
     assert!(mesh.divide(deepest));
+    mesh.set_open(deepest, 0.25);
     let light =
         |scale: f32| (0..mesh.elements().len()).map(|i| LinearRgb::new(i as f32, scale, 0.5)).collect();
     let (incident, direct) = (light(1.0), light(0.25));
@@ -70,7 +71,7 @@ fn forged(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
 #[test]
 fn forged_counts_and_indices_are_refused() {
     let bytes = solution().save(1);
-    let counts = 20..44;
+    let counts = 20..48;
     for at in counts.step_by(4) {
         let huge = forged(bytes.clone(), |b| b[at..at + 4].copy_from_slice(&u32::MAX.to_le_bytes()));
         assert_eq!(Solution::load(&huge, None), Err(SavedSolutionError::Damaged("its length is wrong")));
