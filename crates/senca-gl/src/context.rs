@@ -80,7 +80,11 @@ pub struct Context {
     pub(crate) queries: query::Occlusion,
     pub(crate) debug: crate::debug::Debug,
     pub(crate) batch: Batch,
-    /// To be done before the batch.
+    /// Batches that come before it and wait to be drawn.
+    pub(crate) waiting: Vec<Batch>,
+    /// Memory of batches that have been drawn.
+    pub(crate) spare_batches: Vec<Batch>,
+    /// To be done before the batches.
     pub(crate) waiting_clear: Option<crate::framebuffer::WaitingClear>,
     /// State that drawing depends on may differ from that of the batch.
     pub(crate) raster_changed: bool,
@@ -130,6 +134,8 @@ impl Context {
             queries: query::Occlusion::default(),
             debug: crate::debug::Debug::default(),
             batch: Batch::default(),
+            waiting: Vec::new(),
+            spare_batches: Vec::new(),
             waiting_clear: None,
             raster_changed: true,
             vertex_changed: true,

@@ -16,8 +16,10 @@ use senca_math::glam::Vec4;
 pub(crate) const MAX_POINT_SIZE: f32 = 2048.0;
 /// Largest width of a line, in pixels.
 pub(crate) const MAX_LINE_WIDTH: f32 = 2048.0;
-/// Vertices after which a batch is drawn in any case.
+/// Vertices after which what waits is drawn in any case.
 const FULL: usize = 1 << 18;
+/// Batches after which they are.
+const MANY: usize = 64;
 
 /// What the primitives of a batch are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -166,6 +168,14 @@ impl Batch {
         self.sizes.extend_from_slice(&p.sizes);
     }
 
+    /// Whether the next batch can be drawn together with this one.
+    fn goes_along(&self, next: &Self) -> bool {
+        let of_triangles =
+            |batch: &Self| batch.kind == Kind::Triangles && !batch.state.has(Cap::PolygonSmooth);
+        let multisample = |batch: &Self| batch.state.has(Cap::Multisample);
+        of_triangles(self) && of_triangles(next) && multisample(self) == multisample(next)
+    }
+
     fn clear(&mut self) {
         self.positions.clear();
         self.varyings.clear();
@@ -182,12 +192,12 @@ impl Context {
             self.raster_changed = false;
             let state = RasterState::new(self);
             if state != self.batch.state {
-                self.draw_gathered();
+                self.set_aside();
                 self.batch.state = state;
             }
         }
         if self.batch.kind != kind || self.batch.layout != layout || self.batch.positions.len() >= FULL {
-            self.draw_gathered();
+            self.set_aside();
             (self.batch.kind, self.batch.layout) = (kind, layout);
         }
         self.batch.positions.len() as u32
@@ -206,14 +216,14 @@ impl Context {
         // What is drawn next has a state of its own again.
         self.raster_changed = true;
         if state != self.batch.state {
-            self.draw_gathered();
+            self.set_aside();
             self.batch.state = state;
         }
         if self.batch.kind != Kind::Points
             || self.batch.layout != layout
             || self.batch.positions.len() >= FULL
         {
-            self.draw_gathered();
+            self.set_aside();
             (self.batch.kind, self.batch.layout) = (Kind::Points, layout);
         }
         self.batch.positions.len() as u32
@@ -221,20 +231,40 @@ impl Context {
 
     /// Draws what waits.
     pub(crate) fn flush_batch(&mut self) {
-        self.draw_gathered();
+        self.set_aside();
+        self.draw_waiting();
         self.settle_clear();
     }
 
-    /// Draws what has been gathered. A clear goes on waiting if that is nothing.
-    fn draw_gathered(&mut self) {
+    /// Puts what has been gathered to what waits to be drawn, and begins anew with the same state. Batches that
+    /// are drawn together pass through the framebuffer's memory once.
+    fn set_aside(&mut self) {
         if self.batch.indices.is_empty() {
             self.batch.clear();
             return;
         }
-        let mut batch = std::mem::take(&mut self.batch);
-        let passed = self.draw_batch(&batch);
-        self.queries.add(passed);
-        batch.clear();
-        self.batch = batch;
+        let mut next = self.spare_batches.pop().unwrap_or_default();
+        (next.kind, next.layout) = (self.batch.kind, self.batch.layout);
+        next.state.clone_from(&self.batch.state);
+        self.waiting.push(std::mem::replace(&mut self.batch, next));
+        let vertices: usize = self.waiting.iter().map(|batch| batch.positions.len()).sum();
+        if vertices >= FULL || self.waiting.len() >= MANY {
+            self.draw_waiting();
+        }
+    }
+
+    /// Draws the batches that wait. A clear goes on waiting if there are none.
+    fn draw_waiting(&mut self) {
+        let mut batches = std::mem::take(&mut self.waiting);
+        for group in batches.chunk_by(Batch::goes_along) {
+            let passed = self.draw_batches(group);
+            self.queries.add(passed);
+        }
+        for mut batch in batches.drain(..) {
+            batch.clear();
+            batch.state.units.clear();
+            self.spare_batches.push(batch);
+        }
+        self.waiting = batches;
     }
 }

@@ -81,4 +81,4 @@ pub use texture::{
     Filter, MAX_TEXTURE_SIDE, Mip, Sampler, SharedTexels, TexelGrid, Texels, Texture, TextureError,
     TextureLevel, Wrap,
 };
-pub use tiled::{TiledRasterizer, TiledSettings};
+pub use tiled::{Draw, TiledRasterizer, TiledSettings};

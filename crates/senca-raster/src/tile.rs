@@ -6,6 +6,7 @@
 
 use crate::api::LANES;
 use crate::bin::TILE;
+use crate::cover::Pass;
 use crate::multisample;
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
 
@@ -226,6 +227,24 @@ impl TileBuffer {
         }
         if band.ids.is_some() {
             turn(&mut self.ids[block], to_samples);
+        }
+    }
+
+    /// Between two draws in the same tile: blocks are kept as the next one wants them, and what is known
+    /// of their depths is found anew.
+    pub(crate) fn pass_on(&mut self, band: &Band<'_>, before: &Pass<'_>, next: &Pass<'_>) {
+        let blocks = |bits: u64| (0..BLOCKS * BLOCKS).filter(move |block| bits >> block & 1 == 1);
+        if before.touches.samples != next.touches.samples {
+            blocks(self.present)
+                .for_each(|block| self.turn(band, block, &next.touches, next.touches.samples));
+        }
+        let changed = match (before.reversed == next.reversed, next.hides_farther) {
+            (false, _) => self.present,
+            (true, true) => self.written,
+            (true, false) => 0,
+        };
+        for block in blocks(changed) {
+            self.farthest[block] = farthest_of(&self.depth[block], next.reversed);
         }
     }
 

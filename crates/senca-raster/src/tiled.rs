@@ -15,6 +15,8 @@ use crate::tile::{Band, ColorFormat, TileBuffer, Touches, band, bands};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Mutex;
 
+/// Triangles for which a second thread is worth its while before they are drawn.
+const WORTH_SHARING: usize = 512;
 /// Triangles, counted once per tile they meet, up to which a draw is done at once on its thread.
 const SMALL_REFERENCES: usize = 24;
 
@@ -34,12 +36,33 @@ impl Default for TiledSettings {
     }
 }
 
+/// One of several draws; see [`TiledRasterizer::draw_all`].
+#[derive(Clone, Copy)]
+pub struct Draw<'a> {
+    /// What is drawn.
+    pub triangles: Primitives<'a>,
+    /// How.
+    pub state: State,
+    /// In which colours.
+    pub shading: Shading<'a>,
+}
+
+/// Triangles of a draw, projected and sorted into tiles. Memory that is used again.
+#[derive(Debug, Default)]
+struct Sorted {
+    vertices: Vec<ScreenVertex>,
+    /// Number of the first of them.
+    first_vertex: usize,
+    runs: Vec<Run>,
+    /// Runs that belong to the draw.
+    count: usize,
+}
+
 /// The fast rasterizer. Keep one and draw with it often: its scratch memory is reused.
 #[derive(Debug, Default)]
 pub struct TiledRasterizer {
     settings: TiledSettings,
-    vertices: Vec<ScreenVertex>,
-    runs: Vec<Run>,
+    sorted: Vec<Sorted>,
     scratch: Vec<Scratch>,
 }
 
@@ -62,9 +85,91 @@ impl TiledRasterizer {
     pub fn scratch_bytes(&self) -> usize {
         let per_thread =
             size_of::<Scratch>() + TileBuffer::BYTES + Batch::BOXED_BYTES + TextureQueue::BOXED_BYTES;
-        self.vertices.capacity() * size_of::<ScreenVertex>()
-            + self.runs.iter().map(Run::bytes).sum::<usize>()
-            + self.scratch.len() * per_thread
+        self.sorted.iter().map(Sorted::bytes).sum::<usize>() + self.scratch.len() * per_thread
+    }
+
+    /// Draws one after another, as [`Rasterizer::draw`] does, but goes through the target only once:
+    /// each tile takes its part of all draws while it is in the cache. Only the first draw of those
+    /// that go together clears; a clear of a later one begins anew.
+    pub fn draw_all(&mut self, target: &mut Target<'_>, draws: &[Draw<'_>]) -> Counters {
+        let mut counters = Counters::default();
+        let together =
+            |a: &Draw<'_>, b: &Draw<'_>| !a.state.antialias && !b.state.antialias && b.state.clear.is_none();
+        for group in draws.chunk_by(together) {
+            counters += match group {
+                [draw] if draw.state.antialias => {
+                    crate::smooth::draw_triangles(target, &draw.triangles, &draw.state, &draw.shading)
+                }
+                _ => self.draw_group(target, group),
+            };
+        }
+        counters
+    }
+
+    fn draw_group(&mut self, target: &mut Target<'_>, draws: &[Draw<'_>]) -> Counters {
+        let mut clear = draws.first().and_then(|draw| draw.state.clear);
+        if let Some(draw) = draws.first().filter(|draw| draw.state.scissor.is_some()) {
+            crate::pixel::clear_in_scissor(target, &draw.state);
+            clear = None;
+        }
+        let tiles = [target.width as usize, target.height as usize].map(|n| n.div_ceil(TILE));
+        let map = |draw: &Draw<'_>| ScreenMap::new(target.width, target.height, &draw.state);
+        let maps: Vec<ScreenMap> = draws.iter().map(map).collect();
+        if self.sorted.len() < draws.len() {
+            self.sorted.resize_with(draws.len(), Sorted::default);
+        }
+        let mut counters = self.sort(draws, &maps, tiles);
+        let mut parts = Vec::with_capacity(draws.len());
+        for ((draw, map), sorted) in draws.iter().zip(&maps).zip(&self.sorted) {
+            let pass = pass(target, &draw.triangles, &draw.state, &draw.shading, map, clear);
+            parts.push(Part {
+                input: sorted.input(draw, map, tiles),
+                runs: &sorted.runs[..sorted.count],
+                pass,
+            });
+        }
+        share_touches(&mut parts);
+        let frame = Frame { tiles, clears: clear.is_some(), parts: &parts };
+        let mut add = |c: FragmentCounts| {
+            counters.tested += c.tested;
+            counters.passed += c.passed;
+            counters.shaded += c.shaded;
+        };
+        let threads = self.settings.threads();
+        if frame.is_small() {
+            add(frame.draw_small(target, &mut self.scratch, self.settings.level));
+        } else {
+            let drawn = frame.draw(target, threads, &mut self.scratch, self.settings.level);
+            drawn.into_iter().for_each(add);
+        }
+        counters
+    }
+
+    /// Projects the triangles of all draws and sorts them into tiles.
+    fn sort(&mut self, draws: &[Draw<'_>], maps: &[ScreenMap], tiles: [usize; 2]) -> Counters {
+        let threads = self.settings.threads();
+        let jobs = draws.iter().zip(maps).zip(&mut self.sorted);
+        let triangles: usize = draws.iter().map(|draw| draw.triangles.indices.len() / 3).sum();
+        let mut counters = Counters::default();
+        if draws.len() > 1 && triangles >= WORTH_SHARING && triangles / draws.len() < RUN {
+            // Several of middling size: each on one thread.
+            let fill = |((draw, map), sorted): ((&Draw<'_>, &ScreenMap), &mut Sorted)| {
+                sorted.fill(draw, map, tiles, 1)
+            };
+            share(threads, jobs.collect(), fill).into_iter().for_each(|c| counters += c);
+        } else {
+            jobs.for_each(|((draw, map), sorted)| counters += sorted.fill(draw, map, tiles, threads));
+        }
+        counters
+    }
+}
+
+impl TiledSettings {
+    fn threads(&self) -> usize {
+        match self.threads {
+            0 => rayon::current_num_threads(),
+            n => n,
+        }
     }
 }
 
@@ -76,66 +181,74 @@ impl Rasterizer for TiledRasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        if state.antialias {
-            return crate::smooth::draw_triangles(target, triangles, state, shading);
-        }
-        let map = ScreenMap::new(target.width, target.height, state);
-        let mut clear = state.clear;
-        if state.scissor.is_some() {
-            crate::pixel::clear_in_scissor(target, state);
-            clear = None;
-        }
-        let threads = self.threads();
-        let tiles = [target.width as usize, target.height as usize].map(|n| n.div_ceil(TILE));
-        let first_vertex = self.project(triangles, &map, threads);
-        let input = BinInput {
-            primitives: triangles,
-            vertices: &self.vertices,
-            first_vertex,
-            map: &map,
-            cull: state.cull,
-            interpolation: state.interpolation,
-            tiles,
-        };
-        let count = triangles.indices.len() / 3;
-        let length = run_length(tiles);
-        let runs = count.div_ceil(length);
-        if self.runs.len() < runs {
-            self.runs.resize_with(runs, Run::default);
-        }
-        let mut counters = Counters::default();
-        if let [run] = &mut self.runs[..runs] {
-            run.fill(&input, 0..count);
-            counters += run.counters;
-        } else {
-            let jobs = self.runs[..runs].iter_mut().enumerate();
-            let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
-                run.fill(&input, k * length..((k + 1) * length).min(count));
-                run.counters
-            });
-            filled.into_iter().for_each(|c| counters += c);
-        }
-        let pass = pass(target, triangles, state, shading, &map, clear);
-        let frame = Frame { input: &input, runs: &self.runs[..runs], pass: &pass };
-        let mut add = |c: FragmentCounts| {
-            counters.tested += c.tested;
-            counters.passed += c.passed;
-            counters.shaded += c.shaded;
-        };
-        if frame.is_small() {
-            add(frame.draw_small(target, &mut self.scratch, self.settings.level));
-        } else {
-            let drawn = frame.draw(target, threads, &mut self.scratch, self.settings.level);
-            drawn.into_iter().for_each(add);
-        }
-        counters
+        self.draw_all(target, &[Draw { triangles: *triangles, state: *state, shading: *shading }])
     }
 
     fn threads(&self) -> usize {
-        match self.settings.threads {
-            0 => rayon::current_num_threads(),
-            n => n,
+        self.settings.threads()
+    }
+}
+
+impl Sorted {
+    fn bytes(&self) -> usize {
+        self.vertices.capacity() * size_of::<ScreenVertex>() + self.runs.iter().map(Run::bytes).sum::<usize>()
+    }
+
+    fn input<'a>(&'a self, draw: &'a Draw<'_>, map: &'a ScreenMap, tiles: [usize; 2]) -> BinInput<'a> {
+        BinInput {
+            primitives: &draw.triangles,
+            vertices: &self.vertices,
+            first_vertex: self.first_vertex,
+            map,
+            cull: draw.state.cull,
+            interpolation: draw.state.interpolation,
+            tiles,
         }
+    }
+
+    /// Projects the triangles of a draw and sorts them into tiles, on `threads` threads.
+    fn fill(&mut self, draw: &Draw<'_>, map: &ScreenMap, tiles: [usize; 2], threads: usize) -> Counters {
+        self.project(&draw.triangles, map, threads);
+        let count = draw.triangles.indices.len() / 3;
+        let length = run_length(tiles);
+        self.count = count.div_ceil(length);
+        let mut runs = std::mem::take(&mut self.runs);
+        if runs.len() < self.count {
+            runs.resize_with(self.count, Run::default);
+        }
+        let input = self.input(draw, map, tiles);
+        let jobs = runs[..self.count].iter_mut().enumerate();
+        let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
+            run.fill(&input, k * length..((k + 1) * length).min(count));
+            run.counters
+        });
+        self.runs = runs;
+        let mut counters = Counters::default();
+        filled.into_iter().for_each(|c| counters += c);
+        counters
+    }
+
+    /// Projects the vertices the indices refer to.
+    fn project(&mut self, p: &Primitives<'_>, map: &ScreenMap, threads: usize) {
+        let count = vertex_count(p);
+        let first = p.indices.iter().fold(u32::MAX, |a, &i| a.min(i));
+        let last = p.indices.iter().fold(0, |a, &i| a.max(i));
+        let end = (last as usize + 1).min(count);
+        self.first_vertex = (first as usize).min(end);
+        let positions = &p.positions[self.first_vertex..end];
+        self.vertices.resize(positions.len(), ScreenVertex::default());
+        if positions.len() <= RUN {
+            for (to, from) in self.vertices.iter_mut().zip(positions) {
+                *to = map.project(*from);
+            }
+            return;
+        }
+        let jobs = positions.chunks(RUN).zip(self.vertices.chunks_mut(RUN)).collect();
+        share(threads, jobs, |(from, to): (&[_], &mut [ScreenVertex])| {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = map.project(*from);
+            }
+        });
     }
 }
 
@@ -203,40 +316,43 @@ fn pass<'a>(
     }
 }
 
-impl TiledRasterizer {
-    /// Projects the vertices the indices refer to; returns the number of the first.
-    fn project(&mut self, p: &Primitives<'_>, map: &ScreenMap, threads: usize) -> usize {
-        let count = vertex_count(p);
-        let first = p.indices.iter().fold(u32::MAX, |a, &i| a.min(i));
-        let last = p.indices.iter().fold(0, |a, &i| a.max(i));
-        let end = (last as usize + 1).min(count);
-        let first = (first as usize).min(end);
-        let positions = &p.positions[first..end];
-        self.vertices.resize(positions.len(), ScreenVertex::default());
-        if positions.len() <= RUN {
-            for (to, from) in self.vertices.iter_mut().zip(positions) {
-                *to = map.project(*from);
-            }
-            return first;
-        }
-        let jobs = positions.chunks(RUN).zip(self.vertices.chunks_mut(RUN)).collect();
-        share(threads, jobs, |(from, to): (&[_], &mut [ScreenVertex])| {
-            for (to, from) in to.iter_mut().zip(from) {
-                *to = map.project(*from);
-            }
-        });
-        first
+/// A draw that tiles are drawn from.
+struct Part<'a> {
+    input: BinInput<'a>,
+    runs: &'a [Run],
+    pass: Pass<'a>,
+}
+
+/// Lets each part bring in and take back what any of them touches.
+fn share_touches(parts: &mut [Part<'_>]) {
+    let any = |f: fn(&Touches) -> bool| parts.iter().any(|part| f(&part.pass.touches));
+    let (color, depth) = (any(|t| t.color), any(|t| t.depth));
+    let (reads_depth, stencil) = (any(|t| t.reads_depth), any(|t| t.stencil));
+    for part in parts {
+        let touches = &mut part.pass.touches;
+        *touches = Touches { color, depth, reads_depth, stencil, ..*touches };
     }
 }
 
 /// Everything the tiles are drawn from.
 struct Frame<'a> {
-    input: &'a BinInput<'a>,
-    runs: &'a [Run],
-    pass: &'a Pass<'a>,
+    /// Tiles in a row, and rows of tiles.
+    tiles: [usize; 2],
+    clears: bool,
+    /// In order.
+    parts: &'a [Part<'a>],
 }
 
 impl Frame<'_> {
+    /// References in some tiles of a row.
+    fn work(&self, tiles: std::ops::Range<usize>) -> u64 {
+        self.runs().map(|run| run.work(tiles.clone())).sum()
+    }
+
+    fn runs(&self) -> impl Iterator<Item = &Run> {
+        self.parts.iter().flat_map(|part| part.runs)
+    }
+
     fn draw(
         &self,
         target: &mut Target<'_>,
@@ -244,20 +360,17 @@ impl Frame<'_> {
         buffers: &mut Vec<Scratch>,
         level: Level,
     ) -> Vec<FragmentCounts> {
-        let columns = self.input.tiles[0];
+        let columns = self.tiles[0];
         let mut work: Vec<_> = bands(target)
             .into_iter()
-            .map(|band| {
-                let tiles = band.row * columns..(band.row + 1) * columns;
-                (self.runs.iter().map(|r| r.work(tiles.clone())).sum::<u64>(), band)
-            })
-            .filter(|(references, _)| *references > 0 || self.pass.touches.clear.is_some())
+            .map(|band| (self.work(band.row * columns..(band.row + 1) * columns), band))
+            .filter(|(references, _)| *references > 0 || self.clears)
             .collect();
         work.sort_by_key(|w| std::cmp::Reverse(w.0));
         let spare = Mutex::new(std::mem::take(buffers));
         let counts = share(threads, work, |(_, mut band)| {
             let mut buffer: Scratch = lock(&spare).pop().unwrap_or_default();
-            let counts = self.draw_at(level, &mut band, &mut buffer);
+            let counts = self.draw_band(level, &mut band, &mut buffer);
             lock(&spare).push(buffer);
             counts
         });
@@ -267,8 +380,7 @@ impl Frame<'_> {
 
     /// Whether all of it is little work: not worth a second thread, or looking at all tiles.
     fn is_small(&self) -> bool {
-        self.pass.touches.clear.is_none()
-            && self.runs.iter().map(Run::references).sum::<usize>() <= SMALL_REFERENCES
+        !self.clears && self.runs().map(Run::references).sum::<usize>() <= SMALL_REFERENCES
     }
 
     /// Draws on the calling thread, only where there is something to draw.
@@ -282,11 +394,10 @@ impl Frame<'_> {
         if buffers.is_empty() {
             buffers.push(Scratch::default());
         }
-        let [columns, rows] = self.input.tiles;
+        let [columns, rows] = self.tiles;
         for row in 0..rows {
-            let tiles = row * columns..(row + 1) * columns;
-            if self.runs.iter().map(|r| r.work(tiles.clone())).sum::<u64>() > 0 {
-                let c = self.draw_at(level, &mut band(target, row), &mut buffers[0]);
+            if self.work(row * columns..(row + 1) * columns) > 0 {
+                let c = self.draw_band(level, &mut band(target, row), &mut buffers[0]);
                 counts.tested += c.tested;
                 counts.passed += c.passed;
                 counts.shaded += c.shaded;
@@ -295,52 +406,77 @@ impl Frame<'_> {
         counts
     }
 
-    /// Draws a band with the vector instructions of a level.
-    fn draw_at(&self, level: Level, band: &mut Band<'_>, scratch: &mut Scratch) -> FragmentCounts {
-        let pass = self.pass;
+    /// Draws a row of tiles.
+    fn draw_band(&self, level: Level, band: &mut Band<'_>, scratch: &mut Scratch) -> FragmentCounts {
+        let mut counts = FragmentCounts::default();
+        for column in 0..self.tiles[0] {
+            let tile = band.row * self.tiles[0] + column;
+            let mut before: Option<&Part<'_>> = None;
+            for part in self.parts {
+                if part.runs.iter().all(|run| run.of_tile(tile).is_empty()) {
+                    continue;
+                }
+                if let Some(before) = before {
+                    scratch.tile.pass_on(band, &before.pass, &part.pass);
+                }
+                counts = part.draw(level, tile, band, scratch, counts);
+                before = Some(part);
+            }
+            if let Some(last) = before.or(self.parts.first().filter(|_| self.clears)) {
+                scratch.tile.store(band, column * TILE, &last.pass.touches);
+            }
+        }
+        counts
+    }
+}
+
+impl Part<'_> {
+    /// Draws in a tile, with the vector instructions of a level.
+    fn draw(
+        &self,
+        level: Level,
+        tile: usize,
+        band: &Band<'_>,
+        scratch: &mut Scratch,
+        counts: FragmentCounts,
+    ) -> FragmentCounts {
+        let pass = &self.pass;
         if pass.format == ColorFormat::Rgba8 && pass.state.blend.is_none() && !pass.has_ids {
-            dispatch!(level, simd => self.draw_band::<_, true>(simd, band, scratch))
+            dispatch!(level, simd => self.draw_tile::<_, true>(simd, tile, band, scratch, counts))
         } else {
-            dispatch!(level, simd => self.draw_band::<_, false>(simd, band, scratch))
+            dispatch!(level, simd => self.draw_tile::<_, false>(simd, tile, band, scratch, counts))
         }
     }
 
     #[inline(always)]
-    fn draw_band<S: Simd, const FAST: bool>(
+    fn draw_tile<S: Simd, const FAST: bool>(
         &self,
         simd: S,
-        band: &mut Band<'_>,
+        tile: usize,
+        band: &Band<'_>,
         scratch: &mut Scratch,
+        counts: FragmentCounts,
     ) -> FragmentCounts {
-        let mut counts = FragmentCounts::default();
-        for column in 0..self.input.tiles[0] {
-            let tile = band.row * self.input.tiles[0] + column;
-            if self.pass.touches.clear.is_none() && self.runs.iter().all(|run| run.of_tile(tile).is_empty()) {
-                continue;
-            }
-            let (x, y) = ((column * TILE) as i32, (band.row * TILE) as i32);
-            let whole = Bounds { x0: x, y0: y, x1: x + TILE as i32, y1: y + TILE as i32 };
-            let bounds = whole.intersect(self.pass.map.bounds);
-            let mut draw = TileDraw::<FAST> {
-                pass: self.pass,
-                band,
-                buffer: &mut scratch.tile,
-                batch: &mut scratch.batch,
-                queue: &mut scratch.queue,
-                tile: [x, y],
-                bounds,
-                partial: bounds != whole,
-                counts,
-            };
-            let mut references =
-                self.runs.iter().flat_map(|run| run.of_tile(tile).iter().map(move |r| (run, r)));
-            while self.fill(draw.batch, &mut references) {
-                draw.flush(simd);
-            }
-            counts = draw.counts;
-            scratch.tile.store(band, x as usize, &self.pass.touches);
+        let column = tile - band.row * self.input.tiles[0];
+        let (x, y) = ((column * TILE) as i32, (band.row * TILE) as i32);
+        let whole = Bounds { x0: x, y0: y, x1: x + TILE as i32, y1: y + TILE as i32 };
+        let bounds = whole.intersect(self.pass.map.bounds);
+        let mut draw = TileDraw::<FAST> {
+            pass: &self.pass,
+            band,
+            buffer: &mut scratch.tile,
+            batch: &mut scratch.batch,
+            queue: &mut scratch.queue,
+            tile: [x, y],
+            bounds,
+            partial: bounds != whole,
+            counts,
+        };
+        let mut references = self.runs.iter().flat_map(|run| run.of_tile(tile).iter().map(move |r| (run, r)));
+        while self.fill(draw.batch, &mut references) {
+            draw.flush(simd);
         }
-        counts
+        draw.counts
     }
 
     /// Fills the batch; whether there was anything to fill it with.

@@ -67,7 +67,8 @@ impl Context {
     }
 
     fn clear_buffers(&mut self, mask: Enum) {
-        if self.batch.indices.is_empty() && self.waiting_clear.is_some() {
+        let nothing_waits = self.batch.indices.is_empty() && self.waiting.is_empty();
+        if nothing_waits && self.waiting_clear.is_some() {
             // A clear of one buffer after that of another: both wait.
             if let (Some(new), Some(old)) = (self.whole_clear(mask), self.waiting_clear.as_mut()) {
                 let (to, from) = (&mut old.values, new.values);

@@ -9,27 +9,28 @@ use crate::state::Cap;
 use crate::{Context, Enum, gl};
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Clear, Compare, Counters, Cull, DepthBias, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading,
-    State, StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
+    Clear, Compare, Counters, Cull, DepthBias, Draw, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading,
+    SimdLevel, State, StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
-use shading::{simple_shading, simple_texture};
+use shading::{SimpleShading, simple_shading, simple_texture};
 
 /// A step of depth that is never lost: two of the smallest of 24 bits.
 const DEPTH_UNIT: f32 = 1.0 / (1 << 23) as f32;
 
 impl Context {
-    /// Draws a batch; returns how many samples passed.
-    pub(crate) fn draw_batch(&mut self, batch: &Batch) -> u64 {
-        let clear = self.waiting_clear.filter(|clear| clears_along(clear, batch)).map(|clear| clear.values);
+    /// Draws batches that go together; returns how many samples passed.
+    pub(crate) fn draw_batches(&mut self, batches: &[Batch]) -> u64 {
+        let Some(first) = batches.first() else { return 0 };
+        let clear = self.waiting_clear.filter(|clear| clears_along(clear, first)).map(|clear| clear.values);
         match clear {
             Some(_) => self.waiting_clear = None,
             None => self.settle_clear(),
         }
-        let rows = if clear.is_some() { 0..u32::MAX } else { rows_of(batch) };
+        let rows = if clear.is_some() { 0..u32::MAX } else { rows_of_all(batches) };
         let mut planes = self.framebuffers.take_planes_for(rows);
-        let (rasterizer, multisample) = (&mut self.rasterizer, batch.state.has(Cap::Multisample));
+        let (rasterizer, multisample) = (&mut self.rasterizer, first.state.has(Cap::Multisample));
         let passed = planes
-            .draw(multisample, |mut target, side| draw(rasterizer, &mut target, batch, side, clear).passed);
+            .draw(multisample, |mut target, side| draw(rasterizer, &mut target, batches, side, clear).passed);
         self.framebuffers.put_back(planes);
         passed
     }
@@ -55,6 +56,12 @@ fn covers(r: Rect, [width, height]: [u32; 2]) -> bool {
     r.x <= 0 && r.y <= 0 && end(r.x, r.width) >= i64::from(width) && end(r.y, r.height) >= i64::from(height)
 }
 
+/// The rows batches have pixels in, or more.
+fn rows_of_all(batches: &[Batch]) -> std::ops::Range<u32> {
+    let join = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start.min(b.start)..a.end.max(b.end);
+    batches.iter().map(rows_of).reduce(join).unwrap_or(0..0)
+}
+
 /// The rows a batch has pixels in, or more.
 fn rows_of(batch: &Batch) -> std::ops::Range<u32> {
     let all = 0..u32::MAX;
@@ -75,63 +82,104 @@ fn rows_of(batch: &Batch) -> std::ops::Range<u32> {
     (low - rim).max(0.0) as u32..(high + rim).max(0.0) as u32
 }
 
-/// Draws a batch into a target that has a square of `side` samples along each side of a pixel.
+/// Draws batches into a target that has a square of `side` samples along each side of a pixel.
 fn draw(
     rasterizer: &mut TiledRasterizer,
     target: &mut Target<'_>,
-    batch: &Batch,
+    batches: &[Batch],
     side: u32,
     clear: Option<Clear>,
 ) -> Counters {
-    let s = &batch.state;
-    let both_culled = s.has(Cap::CullFace) && s.polygon.cull_face == gl::FRONT_AND_BACK;
-    if both_culled && batch.kind == Kind::Triangles {
-        return Counters::default();
-    }
-    let mut state = State { clear, ..in_samples(raster_state(batch), side) };
-    state.scissor = state.scissor.filter(|scissor| !covers(*scissor, [target.width(), target.height()]));
-    let stride = usize::from(batch.layout.stride);
-    let sized = with_sizes(batch, stride);
-    let (varyings, stride) = match &sized {
-        Some(sized) => (sized.as_slice(), stride + 1),
-        None => (batch.varyings.as_slice(), stride),
-    };
-    let joins: Vec<u32> = match state.stipple {
-        Some(_) => batch.continues.iter().map(|goes_on| u32::from(*goes_on)).collect(),
-        None => Vec::new(),
-    };
-    let lifted = lifted(batch, state.depth_bias.constant);
-    let primitives = Primitives {
-        positions: lifted.as_deref().unwrap_or(&batch.positions),
-        varyings,
-        stride,
-        indices: &batch.indices,
-        ids: if joins.is_empty() { Ids::Same(0) } else { Ids::Each(&joins) },
-    };
-    let texture = simple_texture(batch);
-    if let Some((shading, blend)) = simple_shading(s, batch.kind, target, texture.as_ref()) {
-        state.blend = blend;
-        return dispatch(rasterizer, target, batch.kind, &primitives, &state, &shading);
-    }
     let level = rasterizer.settings().level;
-    let buffers = [target.has_depth(), target.has_stencil()];
-    state.multisample = side > 1;
-    let program = Program::new(s, batch.kind, &batch.layout, level, buffers).with_samples(side > 1);
-    dispatch(rasterizer, target, batch.kind, &primitives, &state, &Shading::Stage(&program))
+    let ready = batches.iter().enumerate().filter(|(_, batch)| !is_culled(batch)).map(|(k, batch)| {
+        let clear = clear.filter(|_| k == 0);
+        Ready::new(batch, target, side, clear, level)
+    });
+    let ready: Vec<Ready<'_>> = ready.collect();
+    let draws: Vec<Draw<'_>> = ready.iter().map(Ready::draw).collect();
+    let kind = batches.first().map_or(Kind::Triangles, |batch| batch.kind);
+    if kind == Kind::Triangles {
+        return rasterizer.draw_all(target, &draws);
+    }
+    let mut counters = Counters::default();
+    for Draw { triangles: strokes, state, shading } in &draws {
+        counters += match kind {
+            Kind::Points | Kind::PolygonPoints => rasterizer.draw_points(target, strokes, state, shading),
+            _ => rasterizer.draw_lines(target, strokes, state, shading),
+        };
+    }
+    counters
 }
 
-fn dispatch(
-    rasterizer: &mut TiledRasterizer,
-    target: &mut Target<'_>,
-    kind: Kind,
-    primitives: &Primitives<'_>,
-    state: &State,
-    shading: &Shading<'_>,
-) -> Counters {
-    match kind {
-        Kind::Triangles => rasterizer.draw(target, primitives, state, shading),
-        Kind::Lines | Kind::PolygonLines => rasterizer.draw_lines(target, primitives, state, shading),
-        Kind::Points | Kind::PolygonPoints => rasterizer.draw_points(target, primitives, state, shading),
+/// Whether nothing of a batch is to be seen.
+fn is_culled(batch: &Batch) -> bool {
+    let s = &batch.state;
+    let both = s.has(Cap::CullFace) && s.polygon.cull_face == gl::FRONT_AND_BACK;
+    both && batch.kind == Kind::Triangles
+}
+
+/// A batch in the rasterizer's terms.
+struct Ready<'a> {
+    batch: &'a Batch,
+    state: State,
+    /// Varyings with sizes of points behind them, where they have such.
+    sized: Option<Vec<f32>>,
+    joins: Vec<u32>,
+    lifted: Option<Vec<Vec4>>,
+    work: Work,
+}
+
+/// Who colours a batch.
+enum Work {
+    /// The rasterizer by itself.
+    Simple(SimpleShading),
+    Program(Box<Program>),
+}
+
+impl<'a> Ready<'a> {
+    fn new(batch: &'a Batch, target: &Target<'_>, side: u32, clear: Option<Clear>, level: SimdLevel) -> Self {
+        let s = &batch.state;
+        let mut state = State { clear, ..in_samples(raster_state(batch), side) };
+        state.scissor = state.scissor.filter(|scissor| !covers(*scissor, [target.width(), target.height()]));
+        let joins: Vec<u32> = match state.stipple {
+            Some(_) => batch.continues.iter().map(|goes_on| u32::from(*goes_on)).collect(),
+            None => Vec::new(),
+        };
+        let lifted = lifted(batch, state.depth_bias.constant);
+        let sized = with_sizes(batch, usize::from(batch.layout.stride));
+        let work = match simple_shading(s, batch.kind, target, simple_texture(batch)) {
+            Some(simple) => {
+                state.blend = simple.blend;
+                Work::Simple(simple)
+            }
+            None => {
+                let buffers = [target.has_depth(), target.has_stencil()];
+                state.multisample = side > 1;
+                let program = Program::new(s, batch.kind, &batch.layout, level, buffers);
+                Work::Program(Box::new(program.with_samples(side > 1)))
+            }
+        };
+        Self { batch, state, sized, joins, lifted, work }
+    }
+
+    fn draw(&self) -> Draw<'_> {
+        let stride = usize::from(self.batch.layout.stride);
+        let (varyings, stride) = match &self.sized {
+            Some(sized) => (sized.as_slice(), stride + 1),
+            None => (self.batch.varyings.as_slice(), stride),
+        };
+        let triangles = Primitives {
+            positions: self.lifted.as_deref().unwrap_or(&self.batch.positions),
+            varyings,
+            stride,
+            indices: &self.batch.indices,
+            ids: if self.joins.is_empty() { Ids::Same(0) } else { Ids::Each(&self.joins) },
+        };
+        let shading = match &self.work {
+            Work::Simple(simple) => simple.shading(),
+            Work::Program(program) => Shading::Stage(&**program),
+        };
+        Draw { triangles, state: self.state, shading }
     }
 }
 

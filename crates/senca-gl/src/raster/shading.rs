@@ -104,13 +104,33 @@ fn sampler(p: &TexParams, env_lod_bias: f32, levels: usize) -> Option<Sampler> {
     })
 }
 
+/// The rasterizer's own shading and blending.
+#[derive(Debug)]
+pub(super) struct SimpleShading {
+    /// `None` if depths are all that counts.
+    color: Option<ColorSource>,
+    texture: Option<SimpleTexture>,
+    pub(super) blend: Option<Blend>,
+}
+
+impl SimpleShading {
+    /// In the rasterizer's terms.
+    pub(super) fn shading(&self) -> Shading<'_> {
+        let Some(color) = self.color else { return Shading::None };
+        let texture = self.texture.as_ref();
+        let texture =
+            texture.map(|t| TextureUnit { texture: &t.texture, sampler: t.sampler, coords: t.coords });
+        Shading::Fixed { color, texture }
+    }
+}
+
 /// The rasterizer's own shading and blending, where the state asks for no more than it can.
-pub(super) fn simple_shading<'a>(
+pub(super) fn simple_shading(
     s: &RasterState,
     kind: Kind,
     target: &Target<'_>,
-    texture: Option<&'a SimpleTexture>,
-) -> Option<(Shading<'a>, Option<Blend>)> {
+    texture: Option<SimpleTexture>,
+) -> Option<SimpleShading> {
     let stencil = s.has(Cap::StencilTest) && target.has_stencil();
     let stipple = kind == Kind::Triangles && s.has(Cap::PolygonStipple);
     if stencil || stipple {
@@ -118,7 +138,7 @@ pub(super) fn simple_shading<'a>(
     }
     let alpha_test = s.has(Cap::AlphaTest) && s.color.alpha_func != gl::ALWAYS;
     if s.color.mask == [false; 4] && !alpha_test {
-        return Some((Shading::None, None));
+        return Some(SimpleShading { color: None, texture: None, blend: None });
     }
     let plain = (s.units.is_empty() || texture.is_some())
         && !s.color_sum
@@ -131,12 +151,11 @@ pub(super) fn simple_shading<'a>(
     }
     let blend = if s.has(Cap::Blend) { Some(blend_of(&s.color)?) } else { None };
     let blend = blend.filter(|b| *b != Blend { source: Factor::One, destination: Factor::Zero });
-    let color = match texture {
+    let color = match &texture {
         Some(texture) if texture.replaces => ColorSource::Constant([1.0; 4]),
         _ => ColorSource::Rgba { first: 0 },
     };
-    let texture = texture.map(|t| TextureUnit { texture: &t.texture, sampler: t.sampler, coords: t.coords });
-    Some((Shading::Fixed { color, texture }, blend))
+    Some(SimpleShading { color: Some(color), texture, blend })
 }
 
 /// The blending, if it is a sum with the same factors for colour and alpha.
@@ -225,7 +244,7 @@ mod tests {
                     let mut none = [[0u8; 4]; 1];
                     let target =
                         Target::new(1, 1).and_then(|t| t.with_color(ColorPlane::Rgba8(&mut none))).unwrap();
-                    let simple = simple_shading(&batch.state, Kind::Triangles, &target, Some(&texture));
+                    let simple = simple_shading(&batch.state, Kind::Triangles, &target, Some(texture));
                     let program = Program::new(
                         &batch.state,
                         Kind::Triangles,
@@ -233,7 +252,7 @@ mod tests {
                         SimdLevel::new(),
                         [false, false],
                     );
-                    let (a, b) = (draw(&simple.unwrap().0), draw(&Shading::Stage(&program)));
+                    let (a, b) = (draw(&simple.unwrap().shading()), draw(&Shading::Stage(&program)));
                     let far =
                         |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 3);
                     let apart = a.iter().zip(&b).filter(far).count();
