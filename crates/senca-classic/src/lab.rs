@@ -25,6 +25,7 @@ pub mod polygon;
 pub mod programs;
 pub mod shading;
 pub mod solid;
+mod space;
 pub mod vectors;
 pub mod view;
 

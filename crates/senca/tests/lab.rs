@@ -83,7 +83,7 @@ fn bad_input_is_told_with_its_place() {
         (&["8", "100", "16", "1", "0"], 1, "command line:1:10: umax is 0, but must be greater than umin, 1"),
         (&["8", "--center", "0,1", "--width", "1e-99999"], 2, "out of range"),
         (&["8", "--center", "0", "--width", "1"], 2, "two numbers RE,IM"),
-        (&["1", "system", "-o", "a.png"], 2, "has no picture"),
+        (&["1", "vectors", "1", "2"], 2, "takes no numbers"),
         (&["9"], 2, "'9'"),
     ] {
         let output = run(arguments);

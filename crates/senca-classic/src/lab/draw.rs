@@ -82,20 +82,33 @@ pub fn outline(canvas: &mut Canvas, corners: &[[f64; 2]], color: u32) {
 /// 255. A pixel belongs to it when its centre does; centres on an edge belong to one side of it, so
 /// that neighbours neither overlap nor leave gaps.
 pub fn triangle(canvas: &mut Canvas, corners: [[f64; 2]; 3], colors: [[f64; 3]; 3]) {
-    let [a, b, c] = corners;
+    each_pixel(canvas, corners, |canvas, x, y, shares| {
+        let mixed = |k: usize| (0..3).map(|i| shares[i] * colors[i][k]).sum::<f64>();
+        canvas.set(x, y, rgb([mixed(0), mixed(1), mixed(2)]));
+    });
+}
+
+/// Calls `paint` with each pixel of a triangle, and the shares of its corners there, which sum to 1.
+fn each_pixel(
+    canvas: &mut Canvas,
+    [a, mut b, mut c]: [[f64; 2]; 3],
+    mut paint: impl FnMut(&mut Canvas, i32, i32, [f64; 3]),
+) {
     let edge =
         |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let turned = edge(a, b, c) < 0.0;
+    if turned {
+        (b, c) = (c, b);
+    }
     let area = edge(a, b, c);
     if area == 0.0 || !area.is_finite() {
         return;
     }
-    if area < 0.0 {
-        return triangle(canvas, [a, c, b], [colors[0], colors[2], colors[1]]);
-    }
     let owns = |p: [f64; 2], q: [f64; 2]| q[1] < p[1] || (q[1] == p[1] && q[0] > p[0]);
+    let own = [owns(b, c), owns(c, a), owns(a, b)];
     let bounds = |k: usize, size: usize| {
-        let low = corners.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min).floor().max(0.0);
-        let high = corners.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max).ceil().min(size as f64);
+        let low = [a, b, c].iter().map(|p| p[k]).fold(f64::INFINITY, f64::min).floor().max(0.0);
+        let high = [a, b, c].iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max).ceil().min(size as f64);
         low as i32..high as i32
     };
     let (columns, rows) = (bounds(0, canvas.width()), bounds(1, canvas.height()));
@@ -103,12 +116,23 @@ pub fn triangle(canvas: &mut Canvas, corners: [[f64; 2]; 3], colors: [[f64; 3]; 
         for x in columns.clone() {
             let p = [f64::from(x) + 0.5, f64::from(y) + 0.5];
             let weights = [edge(b, c, p), edge(c, a, p), edge(a, b, p)];
-            let own = [owns(b, c), owns(c, a), owns(a, b)];
             if (0..3).all(|k| weights[k] > 0.0 || (weights[k] == 0.0 && own[k])) {
-                let mixed = |k: usize| (0..3).map(|i| weights[i] * colors[i][k]).sum::<f64>() / area;
-                canvas.set(x, y, rgb([mixed(0), mixed(1), mixed(2)]));
+                let [of_a, of_b, of_c] = weights.map(|w| w / area);
+                paint(canvas, x, y, if turned { [of_a, of_c, of_b] } else { [of_a, of_b, of_c] });
             }
         }
+    }
+}
+
+/// A convex polygon of one colour, through which a `share` of what was there before is seen.
+pub fn glass(canvas: &mut Canvas, corners: &[[f64; 2]], color: u32, share: f64) {
+    let color = channels(color);
+    for i in 2..corners.len() {
+        each_pixel(canvas, [corners[0], corners[i - 1], corners[i]], |canvas, x, y, _| {
+            let behind = channels(canvas.get(x, y).unwrap_or(BLACK));
+            let mixed = std::array::from_fn(|k| color[k] + (behind[k] - color[k]) * share);
+            canvas.set(x, y, rgb(mixed));
+        });
     }
 }
 
@@ -236,6 +260,15 @@ mod tests {
             }
         }
         assert_eq!(seen, whole);
+    }
+
+    #[test]
+    fn what_is_behind_shows_through() {
+        let mut canvas = Canvas::new(10, 10);
+        let square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+        polygon(&mut canvas, &square, 0x64_c8_00);
+        glass(&mut canvas, &square, 0x00_00_c8, 0.25);
+        assert!(canvas.pixels().iter().all(|&p| p == 0x19_32_96));
     }
 
     #[test]

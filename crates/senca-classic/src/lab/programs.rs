@@ -9,7 +9,9 @@ mod line;
 mod polygon;
 mod shading;
 mod solid;
+mod system;
 mod triangle;
+mod vectors;
 mod view;
 
 pub use curve::CurveProgram;
@@ -18,7 +20,9 @@ pub use line::LineProgram;
 pub use polygon::PolygonProgram;
 pub use shading::ShadingProgram;
 pub use solid::SolidProgram;
+pub use system::SystemProgram;
 pub use triangle::TriangleProgram;
+pub use vectors::VectorsProgram;
 pub use view::ViewProgram;
 
 use super::vectors::Row3;

@@ -195,16 +195,24 @@ impl FirstTask {
     pub const MOVE: Matrix<4> =
         Matrix([[1.0, 0.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [2.0, 3.0, 3.0, 1.0]]);
 
+    /// The vectors whose sum is v1.
+    pub const SUMMANDS: [Row3; 2] = [[2.0, 3.0, -4.0], Self::OTHER];
+    /// The vector of the scalar product with v1.
+    pub const OTHER: Row3 = [-1.0, 4.0, -1.0];
+    /// The vector of the vector product with v1.
+    pub const FACTOR: Row3 = [2.0, 2.0, 4.0];
+    /// The homogeneous point.
+    pub const POINT: Row4 = [1.0, 2.0, 3.0, 1.0];
+
     /// Computes all of it.
-    ///
     #[must_use]
     pub fn compute() -> Self {
-        let v1 = add([2.0, 3.0, -4.0], [-1.0, 4.0, -1.0]);
-        let v2 = cross(v1, [2.0, 2.0, 4.0]);
+        let v1 = add(Self::SUMMANDS[0], Self::SUMMANDS[1]);
+        let v2 = cross(v1, Self::FACTOR);
         let inverse = Self::B.inverse().unwrap_or(Matrix::IDENTITY);
         Self {
             v1,
-            s: dot(v1, [-1.0, 4.0, -1.0]),
+            s: dot(v1, Self::OTHER),
             v2,
             v2_length: length(v2),
             v3: scale(v2, 1.0 / length(v2)),
@@ -212,7 +220,7 @@ impl FirstTask {
             m1: Self::A.add(&Self::B),
             m2: Self::A.multiply(&Self::B.transpose()),
             m3: Self::A.multiply(&inverse),
-            v: Self::MOVE.transform([1.0, 2.0, 3.0, 1.0]),
+            v: Self::MOVE.transform(Self::POINT),
         }
     }
 }

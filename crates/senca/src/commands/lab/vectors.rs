@@ -1,7 +1,7 @@
 //! `senca lab 1`: vectors and matrices, three equations, barycentric coordinates.
 
 use clap::Args;
-use senca_classic::lab::programs::TriangleProgram;
+use senca_classic::lab::programs::{SystemProgram, TriangleProgram, VectorsProgram};
 use senca_classic::lab::vectors::{FirstTask, Row3, Solution, barycentric, solve_system};
 use serde_json::json;
 
@@ -26,12 +26,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.task == "barycentric" {
         return run_barycentric(arguments);
     }
-    if arguments.shown.is_drawn() {
-        return Err(Failure::usage(format!(
-            "the task '{}' has no picture; 'senca lab 1 barycentric' has one",
-            arguments.task
-        )));
-    }
     if arguments.task == "system" {
         return run_system(arguments);
     }
@@ -54,7 +48,8 @@ fn run_vectors(shown: &Shown) -> Result<(), Failure> {
         "v1": v1, "s": s, "v2": v2, "v2_length": v2_length, "v3": v3, "v4": v4,
         "M1": json_rows(&m1), "M2": json_rows(&m2), "M3": json_rows(&m3), "V": v,
     });
-    shown.print(&text, &json)
+    shown.print(&text, &json)?;
+    shown.present(&mut VectorsProgram::new(), "lab-1")
 }
 
 fn run_system(arguments: &Arguments) -> Result<(), Failure> {
@@ -77,7 +72,8 @@ fn run_system(arguments: &Arguments) -> Result<(), Failure> {
             ("nothing solves it: the equations contradict each other\n".to_owned(), "none", None)
         }
     };
-    arguments.shown.print(&text, &json!({ "solutions": kind, "solution": solution }))
+    arguments.shown.print(&text, &json!({ "solutions": kind, "solution": solution }))?;
+    arguments.shown.present(&mut SystemProgram::new(&equations), "lab-1")
 }
 
 fn told(v: Row3) -> String {
