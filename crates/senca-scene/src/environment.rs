@@ -98,6 +98,33 @@ impl<'a> Environment<'a> {
         LinearRgb::from_array(sum.map(|s| s as f32)) * self.strength
     }
 
+    /// The light that surfaces receive, by the direction that they face.
+    #[must_use]
+    pub fn irradiance(&self) -> Irradiance {
+        // Texels as large as those of small pictures are not taken for points.
+        let (width, height) = self.image.size();
+        let (width, height) = (width.max(128), height.max(64));
+        let mut sums = [[0.0f64; 3]; 9];
+        for row in 0..height {
+            let edge = |r: u32| (f64::from(r) / f64::from(height) * std::f64::consts::PI).cos();
+            let solid_angle = std::f64::consts::TAU * (edge(row) - edge(row + 1)) / f64::from(width);
+            for column in 0..width {
+                let place = [(column as f32 + 0.5) / width as f32, (row as f32 + 0.5) / height as f32];
+                let direction = self.direction(place);
+                let (basis, color) = (harmonics(direction), self.color(direction).to_array());
+                for (sum, y) in sums.iter_mut().zip(basis) {
+                    (0..3).for_each(|k| sum[k] += solid_angle * f64::from(y) * f64::from(color[k]));
+                }
+            }
+        }
+        let mut irradiance = Irradiance::default();
+        for (i, sum) in sums.into_iter().enumerate() {
+            let share = COSINE_LOBE[i];
+            irradiance.coefficients[i] = LinearRgb::from_array(sum.map(|s| s as f32 * share));
+        }
+        irradiance
+    }
+
     fn texel(&self, column: u32, row: u32) -> LinearRgb {
         let i = row as usize * self.image.size().0 as usize + column as usize;
         match self.image {
@@ -111,6 +138,54 @@ impl<'a> Environment<'a> {
             }
         }
     }
+}
+
+/// Light that arrives at a surface from all around, as a white matt surface that faces some way would show
+/// it: the first nine spherical harmonics, which are right to some percent.
+/// Source: Ramamoorthi and Hanrahan 2001, "An efficient representation for irradiance environment maps".
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Irradiance {
+    coefficients: [LinearRgb; 9],
+}
+
+impl Irradiance {
+    /// The same from everywhere.
+    #[must_use]
+    pub fn even(color: LinearRgb) -> Self {
+        let mut irradiance = Self::default();
+        irradiance.coefficients[0] = color * (2.0 * PI.sqrt());
+        irradiance
+    }
+
+    /// Arriving light over pi where the surface faces `normal` (unit, world space); not negative.
+    #[must_use]
+    pub fn towards(&self, normal: Vec3) -> LinearRgb {
+        let mut sum = LinearRgb::BLACK;
+        for (coefficient, y) in self.coefficients.iter().zip(harmonics(normal)) {
+            sum += *coefficient * y;
+        }
+        sum.map(|v| v.max(0.0))
+    }
+}
+
+/// Share of each harmonic that the cosine lobe leaves, over pi: 1 of order 0, 2/3 of order 1, 1/4 of order 2.
+const COSINE_LOBE: [f32; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
+
+/// The real spherical harmonics of orders 0 to 2 in a unit direction.
+fn harmonics(d: Vec3) -> [f32; 9] {
+    let (zeroth, first) = (0.5 / PI.sqrt(), (0.75 / PI).sqrt());
+    let (second, middle) = ((3.75 / PI).sqrt(), (5.0 / (16.0 * PI)).sqrt());
+    [
+        zeroth,
+        first * d.y,
+        first * d.z,
+        first * d.x,
+        second * d.x * d.y,
+        second * d.y * d.z,
+        middle * (3.0 * d.z * d.z - 1.0),
+        second * d.x * d.z,
+        0.5 * second * (d.x * d.x - d.y * d.y),
+    ]
 }
 
 impl Scene {
@@ -182,6 +257,42 @@ mod tests {
             let environment = Environment::of(&scene).expect("an environment");
             let [u2, v2] = environment.place(environment.direction([u, v]));
             prop_assert!((u - u2).abs() < 1e-5 && (v - v2).abs() < 1e-5);
+        }
+    }
+
+    /// One colour everywhere.
+    fn even_picture() -> Scene {
+        let data = ImageData::RgbaF32 { width: 1, height: 1, texels: vec![[0.5, 0.25, 0.125, 1.0]] };
+        let images = vec![TextureImage { name: String::new(), data }];
+        let background = Background::Environment { image: ImageId(0), strength: 2.0, rotation: 1.0 };
+        Scene { images, background, ..Scene::default() }
+    }
+
+    #[test]
+    fn even_surroundings_light_all_sides_alike() {
+        let scene = even_picture();
+        let irradiance = Environment::of(&scene).expect("an environment").irradiance();
+        let even = Irradiance::even(LinearRgb::new(1.0, 0.5, 0.25));
+        for normal in [Vec3::X, Vec3::NEG_Y, Vec3::Z, Vec3::new(0.6, 0.0, -0.8)] {
+            for seen in [irradiance.towards(normal), even.towards(normal)] {
+                assert!((seen.r - 1.0).abs() < 1e-3 && (seen.b - 0.25).abs() < 1e-3, "{seen:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bright_half_lights_what_faces_it() {
+        // Rows 0 to 31 are above the horizon. The harmonics give the closed form exactly here: (1 + cos) / 2.
+        let texel = |i: usize| if i < 32 * 4 { [1.0; 4] } else { [0.0; 4] };
+        let data = ImageData::RgbaF32 { width: 4, height: 64, texels: (0..64 * 4).map(texel).collect() };
+        let images = vec![TextureImage { name: String::new(), data }];
+        let background = Background::Environment { image: ImageId(0), strength: 1.0, rotation: 0.0 };
+        let scene = Scene { images, background, ..Scene::default() };
+        let irradiance = Environment::of(&scene).expect("an environment").irradiance();
+        for angle in [0.0f32, 0.7, 1.6, 2.5, PI] {
+            let (sin, cos) = angle.sin_cos();
+            let seen = irradiance.towards(Vec3::new(sin, cos, 0.0)).g;
+            assert!((seen - 0.5 * (1.0 + cos)).abs() < 2e-3, "{angle}: {seen}");
         }
     }
 }

@@ -72,7 +72,7 @@ pub use camera::{Camera, Lens, Projection};
 pub use counts::SceneCounts;
 pub use csg::{Csg, CsgLeaf, CsgNode};
 pub use default_lights::{DefaultLights, default_lights};
-pub use environment::Environment;
+pub use environment::{Environment, Irradiance};
 pub use faces::{is_flat_quad, split_quad};
 pub use fog::{Fog, FogFalloff};
 pub use framing::{DEFAULT_YFOV, PlacedCamera, SceneCamera, frame_bounds};

@@ -29,13 +29,13 @@ pub use attenuation::{distance_attenuation, inverse_square, polynomial_attenuati
 pub use fog::{apply_fog, fog_share};
 pub use light::{AREA_SAMPLES_PER_SIDE, Incident, Lamp, ShadingLight};
 pub use metallic_roughness::{
-    MetallicRoughnessConstants, fresnel_schlick, ggx_distribution, grazing_viewer, metallic_roughness,
-    metallic_roughness_brdf, smith_visibility, uniform_environment,
+    MetallicRoughnessConstants, environment_shares, fresnel_schlick, ggx_distribution, grazing_viewer,
+    metallic_roughness, metallic_roughness_brdf, smith_visibility, uniform_environment,
 };
 pub use normal_map::{face_towards, perturb_normal, tangent_frame, with_occlusion};
 pub use phong::{
     PhongConstants, cos_incidence, cos_reflection, phong, phong_term, reflected, thesis_linear_attenuation,
     thesis_physical_attenuation,
 };
-pub use rig::{LightRig, ShadingPoint, ambient_without_lights};
+pub use rig::{AmbientLight, LightRig, ShadingPoint};
 pub use spot::{box_light_contains, box_light_frame, cone_cosine, cone_sharp, cone_smooth, spot_share};

@@ -103,8 +103,8 @@ pub fn grazing_viewer(normal: Vec3, to_viewer: Vec3) -> Vec3 {
 }
 
 /// Light that leaves `point` towards the observer: each light through the BRDF (times pi, see the
-/// crate's units), and ambient light as an even environment of radiance Ia. `occlusion` in [0, 1] is
-/// the share of ambient light that reaches the point.
+/// crate's units), and ambient light from the side that the surface faces and from that it mirrors.
+/// `occlusion` in [0, 1] is the share of ambient light that reaches the point.
 #[must_use]
 pub fn metallic_roughness(
     rig: &LightRig,
@@ -115,8 +115,11 @@ pub fn metallic_roughness(
     let n_v = point.normal.dot(point.to_viewer).max(LEAST_COSINE);
     let to_viewer = grazing_viewer(point.normal, point.to_viewer);
     let mut sum = LinearRgb::BLACK;
-    if rig.ambient != LinearRgb::BLACK {
-        sum += rig.ambient * uniform_environment(constants, n_v) * occlusion;
+    if !rig.ambient.is_none() {
+        let [matt, mirror] = environment_shares(constants, n_v);
+        let mirrored = 2.0 * n_v * point.normal - to_viewer;
+        let arriving = [rig.ambient.towards(point.normal), rig.ambient.towards(mirrored)];
+        sum += (arriving[0] * matt + arriving[1] * mirror) * occlusion;
     }
     rig.for_each_incident(point.position, |incident| {
         let n_l = point.normal.dot(incident.to_light);
@@ -129,18 +132,25 @@ pub fn metallic_roughness(
 }
 
 /// Share of an even environment that the surface sends to an observer at cosine `n_v` > 0.
+#[must_use]
+pub fn uniform_environment(constants: &MetallicRoughnessConstants, n_v: f32) -> LinearRgb {
+    let [matt, mirror] = environment_shares(constants, n_v);
+    matt + mirror
+}
+
+/// The shares of [`uniform_environment`] that are scattered, and that are mirrored.
 ///
 /// The mirror part is the directional albedo `f0 a + b`, with a and b as Karis 2014 ("Physically
 /// based shading on mobile") fits them for GGX.
 #[must_use]
-pub fn uniform_environment(constants: &MetallicRoughnessConstants, n_v: f32) -> LinearRgb {
+pub fn environment_shares(constants: &MetallicRoughnessConstants, n_v: f32) -> [LinearRgb; 2] {
     let roughness = constants.alpha.sqrt();
     let r =
         [1.0 - roughness, 0.0425 - 0.0275 * roughness, 1.04 - 0.572 * roughness, 0.022 * roughness - 0.04];
     let a004 = (r[0] * r[0]).min((-9.28 * n_v).exp2()) * r[0] + r[1];
     let (a, b) = (-1.04 * a004 + r[2], 1.04 * a004 + r[3]);
     let dielectric = (0.04 * a + b).clamp(0.0, 1.0);
-    constants.diffuse * (1.0 - dielectric) + constants.mirror * a + LinearRgb::splat(b.max(0.0))
+    [constants.diffuse * (1.0 - dielectric), constants.mirror * a + LinearRgb::splat(b.max(0.0))]
 }
 
 #[cfg(test)]

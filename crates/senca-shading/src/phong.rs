@@ -100,7 +100,7 @@ pub fn phong_term(constants: &PhongConstants, cos_phi: f32, cos_alpha: f32) -> L
 /// light that reaches the point.
 #[must_use]
 pub fn phong(rig: &LightRig, point: &ShadingPoint, constants: &PhongConstants, occlusion: f32) -> LinearRgb {
-    let mut sum = rig.ambient * constants.ambient * occlusion;
+    let mut sum = rig.ambient.towards(point.normal) * constants.ambient * occlusion;
     let shiny = constants.specular != LinearRgb::BLACK;
     rig.for_each_incident(point.position, |incident| {
         let cos_phi = point.normal.dot(incident.to_light);
@@ -147,7 +147,7 @@ mod tests {
     /// `alpha` from the mirrored ray.
     fn value(ia: f32, constants: &PhongConstants, alpha_degrees: f32) -> f32 {
         let rig = LightRig {
-            ambient: LinearRgb::splat(ia),
+            ambient: LinearRgb::splat(ia).into(),
             lights: vec![ShadingLight {
                 color: LinearRgb::WHITE,
                 position: Vec3::ZERO,
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_whole_vertex() {
         let rig = LightRig {
-            ambient: LinearRgb::splat(0.1),
+            ambient: LinearRgb::splat(0.1).into(),
             lights: vec![ShadingLight {
                 color: LinearRgb::new(1.0, 1.0, 0.8),
                 position: Vec3::new(3.0, 0.0, 4.0),

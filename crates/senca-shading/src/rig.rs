@@ -2,7 +2,7 @@
 
 use senca_math::LinearRgb;
 use senca_math::glam::Vec3;
-use senca_scene::{Environment, LightKind, Scene};
+use senca_scene::{Environment, Irradiance, LightKind, Scene};
 
 use crate::{Incident, ShadingLight};
 
@@ -10,9 +10,65 @@ use crate::{Incident, ShadingLight};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightRig {
     /// Ia: the scene's, and the sum of its ambient lights.
-    pub ambient: LinearRgb,
+    pub ambient: AmbientLight,
     /// The lights.
     pub lights: Vec<ShadingLight>,
+}
+
+/// Ambient light: the same from all sides, and the light of surroundings, which is not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AmbientLight {
+    even: LinearRgb,
+    surroundings: Option<Irradiance>,
+}
+
+impl AmbientLight {
+    /// The ambient light of `scene`: its own, that of the lights of this kind that its nodes place, and
+    /// the light of its environment where it has none of its own.
+    #[must_use]
+    pub fn of_scene(scene: &Scene) -> Self {
+        let mut ambient = Self::from(scene.ambient);
+        for (node, world_from_node) in scene.nodes.iter().zip(scene.world_from_nodes()) {
+            let light = node.light.filter(|_| world_from_node.is_some());
+            let light = light.and_then(|id| scene.lights.get(id.index()));
+            if let Some(light) = light.filter(|light| light.kind == LightKind::Ambient) {
+                ambient.even += light.color;
+            }
+        }
+        if scene.ambient == LinearRgb::BLACK {
+            ambient.surroundings = Environment::of(scene).map(|environment| environment.irradiance());
+        }
+        ambient
+    }
+
+    /// What a white matt surface that faces this way (unit, world space) shows of it.
+    #[must_use]
+    #[inline]
+    pub fn towards(&self, normal: Vec3) -> LinearRgb {
+        match &self.surroundings {
+            None => self.even,
+            Some(surroundings) => self.even + surroundings.towards(normal),
+        }
+    }
+
+    /// The light, where it is the same from all sides.
+    #[must_use]
+    pub fn even(&self) -> Option<LinearRgb> {
+        self.surroundings.is_none().then_some(self.even)
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    #[inline]
+    pub fn is_none(&self) -> bool {
+        self.surroundings.is_none() && self.even == LinearRgb::BLACK
+    }
+}
+
+impl From<LinearRgb> for AmbientLight {
+    fn from(even: LinearRgb) -> Self {
+        Self { even, surroundings: None }
+    }
 }
 
 /// Where a surface is evaluated, in world space.
@@ -27,17 +83,14 @@ pub struct ShadingPoint {
 }
 
 impl LightRig {
-    /// The lights that the nodes of `scene` place, in the order of nodes. A scene with an environment
-    /// for its background and no ambient light of its own gets the environment's mean colour as that.
+    /// The lights that the nodes of `scene` place, in the order of nodes, and its ambient light; see
+    /// [`AmbientLight::of_scene`].
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
-        let mut rig = Self { ambient: ambient_without_lights(scene), lights: Vec::new() };
+        let mut rig = Self { ambient: AmbientLight::of_scene(scene), lights: Vec::new() };
         for (node, world_from_node) in scene.nodes.iter().zip(scene.world_from_nodes()) {
             let (Some(id), Some(world_from_light)) = (node.light, world_from_node) else { continue };
             let Some(light) = scene.lights.get(id.index()) else { continue };
-            if light.kind == LightKind::Ambient {
-                rig.ambient += light.color;
-            }
             ShadingLight::resolve(light, &world_from_light, |l| rig.lights.push(l));
         }
         rig
@@ -52,16 +105,6 @@ impl LightRig {
             }
         }
     }
-}
-
-/// Ambient light of a scene without its lights: its own, or the mean colour of the environment where it
-/// has none of its own.
-#[must_use]
-pub fn ambient_without_lights(scene: &Scene) -> LinearRgb {
-    if scene.ambient != LinearRgb::BLACK {
-        return scene.ambient;
-    }
-    Environment::of(scene).map_or(LinearRgb::BLACK, |environment| environment.mean())
 }
 
 #[cfg(test)]
@@ -87,7 +130,7 @@ mod tests {
             scene.roots.push(id);
         }
         let rig = LightRig::of_scene(&scene);
-        assert_eq!(rig.ambient, LinearRgb::splat(0.75));
+        assert_eq!(rig.ambient, LinearRgb::splat(0.75).into());
         assert_eq!(rig.lights.iter().map(|l| l.position.x).collect::<Vec<_>>(), [0.0, 2.0]);
     }
 }

@@ -28,6 +28,9 @@ pub struct MaterialPoint {
     pub occlusion: f32,
     /// k_r, per channel in [0, 1].
     pub mirror: LinearRgb,
+    /// Share of the mirrored part of glTF's model that k_r has taken over, in [0, 1]; 0 but where the
+    /// recursive tracer sends reflected rays from smooth surfaces.
+    pub sharpness: f32,
     /// k_t, per channel in [0, 1].
     pub transmission: LinearRgb,
     /// Index of refraction of the inside, > 0.
@@ -335,6 +338,7 @@ fn constant_of(material: &Material, reflection: ReflectionPoint, alpha: f32) -> 
         coverage: alpha,
         occlusion: 1.0,
         mirror: material.mirror,
+        sharpness: 0.0,
         transmission: material.transmission,
         ior: if material.ior > 0.0 { material.ior } else { 1.0 },
         absorption: material.absorption,

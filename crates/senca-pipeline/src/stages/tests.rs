@@ -253,7 +253,7 @@ fn textures_follow_the_triangle_through_the_scene() {
     use senca_raster::{Texels, Texture};
     let view = simple_view();
     let map = DeviceMap::to_pixels(32, 32).expect("regular");
-    let rig = LightRig { ambient: LinearRgb::WHITE, lights: Vec::new() };
+    let rig = LightRig { ambient: LinearRgb::WHITE.into(), lights: Vec::new() };
     let mut t = triangle([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0]]);
     for (v, uv) in t.vertices.iter_mut().zip([[0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]) {
         v.alignment = Vec2::from_array(uv);

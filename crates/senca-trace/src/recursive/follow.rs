@@ -238,7 +238,7 @@ impl Tracer<'_> {
             let t = hit.crossing.t;
             let at = self.world.interaction(ray, &hit);
             if !self.is_left_out(&at) {
-                let material = self.materials.at(&at);
+                let material = self.material_at(&at);
                 if material.coverage > 0.0 {
                     return Some(Seen { t, at, material });
                 }

@@ -3,7 +3,7 @@
 use senca_math::LinearRgb;
 use senca_math::glam::{DMat4, DVec3};
 use senca_scene::{LightKind, Scene};
-use senca_shading::{Lamp, ShadingLight, ambient_without_lights};
+use senca_shading::{AmbientLight, Lamp, ShadingLight};
 
 use crate::Sampler;
 
@@ -40,15 +40,11 @@ pub(crate) enum ToLight {
 }
 
 /// The lights that the nodes of `scene` place, in the order of nodes, and all ambient light.
-pub(crate) fn lights_of(scene: &Scene) -> (Vec<TracedLight>, LinearRgb) {
-    let mut ambient = ambient_without_lights(scene);
+pub(crate) fn lights_of(scene: &Scene) -> (Vec<TracedLight>, AmbientLight) {
     let mut lights = Vec::new();
     for (node, world_from_node) in scene.nodes.iter().zip(scene.world_from_nodes()) {
         let (Some(id), Some(world_from_light)) = (node.light, world_from_node) else { continue };
         let Some(light) = scene.lights.get(id.index()) else { continue };
-        if light.kind == LightKind::Ambient {
-            ambient += light.color;
-        }
         let mut first = None;
         ShadingLight::resolve(light, &world_from_light, |resolved| {
             first.get_or_insert(resolved);
@@ -61,7 +57,7 @@ pub(crate) fn lights_of(scene: &Scene) -> (Vec<TracedLight>, LinearRgb) {
         let name = if light.name.is_empty() { &node.name } else { &light.name };
         lights.push(TracedLight { name: name.clone(), light: resolved, form });
     }
-    (lights, ambient)
+    (lights, AmbientLight::of_scene(scene))
 }
 
 fn form_of(kind: LightKind, world_from_light: &DMat4) -> Form {
@@ -163,7 +159,7 @@ mod tests {
         let background = Background::Environment { image: ImageId(0), strength: 1.0, rotation: 0.0 };
         let scene = Scene { images, background, ..Scene::default() };
         let ambient = lights_of(&scene).1;
-        assert!((ambient.r - 0.5).abs() < 1e-6, "{ambient:?}");
+        assert!((ambient.towards(senca_math::glam::Vec3::X).r - 0.5).abs() < 1e-4, "{ambient:?}");
         assert_eq!(ambient, LightRig::of_scene(&scene).ambient);
     }
 

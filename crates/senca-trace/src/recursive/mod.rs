@@ -32,6 +32,7 @@ mod lamps;
 pub(crate) mod media;
 pub mod optics;
 mod plain;
+mod polish;
 pub(crate) mod recorder;
 mod reflector;
 mod settings;
@@ -44,6 +45,7 @@ mod tests;
 use senca_math::glam::DVec3;
 use senca_math::{Aabb, LinearRgb, View, ViewKind};
 use senca_scene::{AlphaMode, Background, Fog, Lens};
+use senca_shading::AmbientLight;
 
 use crate::{
     Counters, Crossings, Interaction, MaterialPoint, MaterialTable, PrimaryRays, Ray, SamplePlace, World,
@@ -66,7 +68,7 @@ pub struct Tracer<'w> {
     world: &'w World<'w>,
     materials: MaterialTable<'w>,
     lights: Vec<TracedLight>,
-    ambient: LinearRgb,
+    ambient: AmbientLight,
     fog: Option<Fog>,
     sky: Sky<'w>,
     rays: PrimaryRays,
@@ -248,7 +250,7 @@ impl Tracer<'_> {
         reflector: &Reflector,
     ) -> (LinearRgb, bool) {
         let own = match self.known.0.map(|light| light.at(at, material)) {
-            None => reflector.ambient(self.ambient, material.occlusion),
+            None => reflector.ambient(&self.ambient, material.occlusion),
             Some(KnownLight::Arriving(light)) => reflector.of_known(light),
             Some(KnownLight::Leaving(light)) => return (light, false),
         };

@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use senca_math::LinearRgb;
 use senca_math::glam::Vec3;
 use senca_shading::{
-    Incident, MetallicRoughnessConstants, PhongConstants, cos_reflection, grazing_viewer,
-    metallic_roughness_brdf, phong_term, uniform_environment,
+    AmbientLight, Incident, MetallicRoughnessConstants, PhongConstants, cos_reflection, environment_shares,
+    grazing_viewer, metallic_roughness_brdf, phong_term,
 };
 
 use super::LightModel;
@@ -18,6 +18,8 @@ pub(crate) struct Reflector {
     model: Model,
     normal: Vec3,
     to_viewer: Vec3,
+    /// See [`MaterialPoint::sharpness`].
+    sharpness: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -32,36 +34,41 @@ impl Reflector {
     /// At a place with this material, seen from `to_viewer` (unit).
     #[inline]
     pub(crate) fn new(material: &MaterialPoint, to_viewer: Vec3, light_model: LightModel) -> Self {
-        let normal = material.normal;
+        let (normal, sharpness) = (material.normal, material.sharpness);
         match (material.reflection, light_model) {
             (ReflectionPoint::Phong(constants), _) => {
-                Self { model: Model::Phong(constants), normal, to_viewer }
+                Self { model: Model::Phong(constants), normal, to_viewer, sharpness }
             }
-            (ReflectionPoint::Unlit(color), _) => Self { model: Model::Unlit(color), normal, to_viewer },
+            (ReflectionPoint::Unlit(color), _) => {
+                Self { model: Model::Unlit(color), normal, to_viewer, sharpness }
+            }
             (ReflectionPoint::MetallicRoughness { base_color, metallic, roughness }, LightModel::Phong) => {
                 let constants = PhongConstants::of_metallic_roughness(base_color, metallic, roughness);
-                Self { model: Model::Phong(constants), normal, to_viewer }
+                Self { model: Model::Phong(constants), normal, to_viewer, sharpness }
             }
             (ReflectionPoint::MetallicRoughness { base_color, metallic, roughness }, _) => {
                 let mut constants = MetallicRoughnessConstants::new(base_color, metallic, roughness);
                 // What goes through is not scattered back (KHR_materials_transmission).
                 constants.diffuse = constants.diffuse * material.transmission.map(|k| (1.0 - k).max(0.0));
                 let to_viewer = grazing_viewer(normal, to_viewer);
-                Self { model: Model::MetallicRoughness(constants), normal, to_viewer }
+                Self { model: Model::MetallicRoughness(constants), normal, to_viewer, sharpness }
             }
         }
     }
 
     /// Light that leaves without any lamp: ambient light reflected, or the colour of an unlit surface.
     #[inline]
-    pub(crate) fn ambient(&self, ambient: LinearRgb, occlusion: f32) -> LinearRgb {
+    pub(crate) fn ambient(&self, ambient: &AmbientLight, occlusion: f32) -> LinearRgb {
         match &self.model {
             Model::Unlit(color) => *color,
-            Model::Phong(constants) => ambient * constants.ambient * occlusion,
-            Model::MetallicRoughness(_) if ambient == LinearRgb::BLACK => LinearRgb::BLACK,
+            Model::Phong(constants) => ambient.towards(self.normal) * constants.ambient * occlusion,
+            Model::MetallicRoughness(_) if ambient.is_none() => LinearRgb::BLACK,
             Model::MetallicRoughness(constants) => {
                 let n_v = self.normal.dot(self.to_viewer).max(1e-3);
-                ambient * uniform_environment(constants, n_v) * occlusion
+                let [matt, mirror] = environment_shares(constants, n_v);
+                let mirrored = 2.0 * n_v * self.normal - self.to_viewer;
+                let arriving = ambient.towards(mirrored) * (1.0 - self.sharpness);
+                (ambient.towards(self.normal) * matt + arriving * mirror) * occlusion
             }
         }
     }
@@ -72,7 +79,7 @@ impl Reflector {
     pub(crate) fn of_known(&self, arriving: LinearRgb) -> LinearRgb {
         match &self.model {
             Model::Phong(constants) => arriving * constants.diffuse,
-            Model::Unlit(_) | Model::MetallicRoughness(_) => self.ambient(arriving, 1.0),
+            Model::Unlit(_) | Model::MetallicRoughness(_) => self.ambient(&arriving.into(), 1.0),
         }
     }
 
@@ -129,7 +136,7 @@ mod tests {
             attenuation: senca_scene::Attenuation::InverseSquare { range: None },
             kind: senca_scene::LightKind::Point,
         };
-        let mut rig = LightRig { ambient: LinearRgb::splat(0.1), lights: Vec::new() };
+        let mut rig = LightRig { ambient: LinearRgb::splat(0.1).into(), lights: Vec::new() };
         for place in [[3.0, 1.0, 2.0], [-1.0, 0.0, 0.5], [0.0, 0.0, -4.0]] {
             let placed = senca_math::glam::DMat4::from_translation(place.into());
             senca_shading::ShadingLight::resolve(&light, &placed, |l| rig.lights.push(l));
@@ -139,7 +146,7 @@ mod tests {
 
     /// The light that leaves, lamp by lamp.
     fn summed(reflector: &Reflector, rig: &LightRig, position: Vec3) -> LinearRgb {
-        let mut sum = reflector.ambient(rig.ambient, 0.5);
+        let mut sum = reflector.ambient(&rig.ambient, 0.5);
         rig.for_each_incident(position, |incident| sum += reflector.reflected(&incident));
         sum
     }
@@ -178,7 +185,7 @@ mod tests {
         let value = |to_viewer: Vec3, to_light: Vec3, lit: f32| {
             let reflector = Reflector::new(&material, to_viewer, LightModel::Phong);
             let incident = Incident { to_light, intensity: LinearRgb::WHITE };
-            (reflector.ambient(splat(0.1), 1.0) + reflector.reflected(&incident) * lit).r
+            (reflector.ambient(&splat(0.1).into(), 1.0) + reflector.reflected(&incident) * lit).r
         };
         let slanted = |degrees: f32| Vec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
         assert!((value(Vec3::Z, Vec3::Z, 1.0) - 1.04).abs() < 1e-6);

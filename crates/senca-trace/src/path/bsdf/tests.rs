@@ -27,6 +27,7 @@ fn point(reflection: ReflectionPoint) -> MaterialPoint {
         coverage: 1.0,
         occlusion: 1.0,
         mirror: LinearRgb::BLACK,
+        sharpness: 0.0,
         transmission: LinearRgb::BLACK,
         ior: 1.5,
         absorption: LinearRgb::BLACK,

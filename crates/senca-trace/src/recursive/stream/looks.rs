@@ -51,6 +51,9 @@ impl Look {
     /// The material of this number.
     pub(super) fn of(tracer: &Tracer<'_>, material: usize) -> Self {
         let general = Self { way: Way::General, numbers: [0.0; NUMBERS] };
+        if tracer.ambient.even().is_none() {
+            return general;
+        }
         let Some((constant, texture)) = tracer.materials.simple(material) else { return general };
         let Some(mut look) = Self::at(tracer, constant) else { return general };
         look.way = if texture.is_some() { Way::Textured } else { Way::Constant };
@@ -60,12 +63,13 @@ impl Look {
 
     /// The material at a place; `None` where its reflection is not that of the books.
     pub(super) fn at(tracer: &Tracer<'_>, point: &MaterialPoint) -> Option<Self> {
+        let ambient = tracer.ambient.towards(point.normal);
         let (ambient, phong) = match (point.reflection, tracer.settings.light_model) {
-            (ReflectionPoint::Phong(phong), _) => (tracer.ambient * phong.ambient, phong),
+            (ReflectionPoint::Phong(phong), _) => (ambient * phong.ambient, phong),
             (ReflectionPoint::Unlit(color), _) => (color, PhongConstants::matte(LinearRgb::BLACK)),
             (ReflectionPoint::MetallicRoughness { base_color, metallic, roughness }, LightModel::Phong) => {
                 let phong = PhongConstants::of_metallic_roughness(base_color, metallic, roughness);
-                (tracer.ambient * phong.ambient, phong)
+                (ambient * phong.ambient, phong)
             }
             (ReflectionPoint::MetallicRoughness { .. }, LightModel::Material) => return None,
         };

@@ -190,13 +190,13 @@ impl Tracer<'_> {
         let (rank, t) = (desk.rank[number] as usize, desk.t[number]);
         let hit = stream.forms.hit(rank, t, &desk.hits[number]);
         let at = self.world.interaction(&ray, &hit);
-        let material = (!self.is_left_out(&at)).then(|| self.materials.at(&at));
+        let material = (!self.is_left_out(&at)).then(|| self.material_at(&at));
         match material {
             Some(material) if material.coverage >= 1.0 && !material.transmits() => {
                 let reflector = Reflector::new(&material, at.to_viewer.as_vec3(), self.settings.light_model);
                 let look = Look::at(self, &material);
                 let is_matte = look.is_some();
-                let ambient = || reflector.ambient(self.ambient, material.occlusion);
+                let ambient = || reflector.ambient(&self.ambient, material.occlusion);
                 let none = PhongConstants::matte(LinearRgb::BLACK);
                 let look = look.unwrap_or_else(|| Look::new(&material, ambient(), &none));
                 let face = self.seen_normal(&at, &material);
