@@ -73,6 +73,9 @@ pub struct State {
     pub depth_range: [f32; 2],
     /// Added to the depth of triangles. Default: nothing.
     pub depth_bias: DepthBias,
+    /// The stencil test, before that of depth and before anything is coloured. Stages do not heed it, they do
+    /// their own. Without a stencil target all pass. Default: none.
+    pub stencil: Option<StencilTest>,
     /// How varyings run between the corners. Default: [`Interpolation::Perspective`].
     pub interpolation: Interpolation,
     /// How colours meet those already there. Default: `None`, they replace them.
@@ -144,6 +147,7 @@ impl Default for State {
             depth_write: true,
             depth_range: [senca_math::conventions::DEPTH_NEAR, senca_math::conventions::DEPTH_FAR],
             depth_bias: DepthBias::default(),
+            stencil: None,
             interpolation: Interpolation::Perspective,
             blend: None,
             clear: None,
@@ -233,6 +237,77 @@ impl Compare {
             Self::GreaterEqual => new >= stored,
             Self::Always => true,
         }
+    }
+}
+
+/// A test of stencil values, and what it does to them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilTest {
+    /// How the reference must compare to the stored value, both masked.
+    pub compare: Compare,
+    /// What is compared, and what [`StencilOp::Replace`] writes.
+    pub reference: u8,
+    /// Bits that are compared.
+    pub value_mask: u8,
+    /// Bits that are written.
+    pub write_mask: u8,
+    /// For fragments that fail.
+    pub fail: StencilOp,
+    /// For those that pass, but then fail the depth test.
+    pub depth_fail: StencilOp,
+    /// For those that pass both.
+    pub pass: StencilOp,
+}
+
+/// What becomes of a stencil value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StencilOp {
+    /// It stays.
+    #[default]
+    Keep,
+    /// 0.
+    Zero,
+    /// The reference.
+    Replace,
+    /// One more, up to 255.
+    Increment,
+    /// One less, down to 0.
+    Decrement,
+    /// One more, and 0 after 255.
+    IncrementWrap,
+    /// One less, and 255 after 0.
+    DecrementWrap,
+    /// All bits the other way round.
+    Invert,
+}
+
+impl StencilTest {
+    /// Whether a stored value passes.
+    #[must_use]
+    pub fn passes(&self, stored: u8) -> bool {
+        let (a, b) = (self.reference & self.value_mask, stored & self.value_mask);
+        self.compare.passes(f32::from(a), f32::from(b))
+    }
+
+    /// The value after an operation.
+    #[must_use]
+    pub fn after(&self, op: StencilOp, stored: u8) -> u8 {
+        let value = match op {
+            StencilOp::Keep => stored,
+            StencilOp::Zero => 0,
+            StencilOp::Replace => self.reference,
+            StencilOp::Increment => stored.saturating_add(1),
+            StencilOp::Decrement => stored.saturating_sub(1),
+            StencilOp::IncrementWrap => stored.wrapping_add(1),
+            StencilOp::DecrementWrap => stored.wrapping_sub(1),
+            StencilOp::Invert => !stored,
+        };
+        stored & !self.write_mask | value & self.write_mask
+    }
+
+    /// Whether something becomes of fragments that fail.
+    pub(crate) fn needs_failures(&self) -> bool {
+        self.write_mask != 0 && (self.fail != StencilOp::Keep || self.depth_fail != StencilOp::Keep)
     }
 }
 

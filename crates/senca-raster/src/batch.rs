@@ -9,7 +9,7 @@ use crate::api::{Interpolation, LANES, MAX_VARYINGS};
 use crate::assemble::TriangleVaryings;
 use crate::bin::pixel_box;
 use crate::cover::{Pass, TileEdges};
-use crate::setup::{Bounds, HALF, Plane, SUB, SUB_BITS, ScreenVertex, Setup, double_area};
+use crate::setup::{Bounds, HALF, SUB, SUB_BITS, ScreenVertex, Setup, double_area};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 
 /// Longest side, in fixed-point units, of a triangle set up in vectors: 64 pixels.
@@ -85,7 +85,7 @@ impl Default for Batch {
     }
 }
 
-/// Linear quantities of 16 triangles; see [`Plane`].
+/// Linear quantities of 16 triangles; see [`crate::setup::Plane`].
 #[derive(Clone, Copy)]
 struct Planes<S: Simd> {
     c: f32x16<S>,
@@ -94,7 +94,7 @@ struct Planes<S: Simd> {
 }
 
 impl<S: Simd> Planes<S> {
-    /// See [`Plane::combine`].
+    /// See [`crate::setup::Plane::combine`].
     #[inline(always)]
     fn combine(base: f32x16<S>, a: f32x16<S>, pa: &Self, b: f32x16<S>, pb: &Self) -> Self {
         Self { c: base + (a * pa.c + b * pb.c), dx: a * pa.dx + b * pb.dx, dy: a * pa.dy + b * pb.dy }
@@ -329,11 +329,6 @@ impl Batch {
             varyings.set(slices, &setup, Interpolation::Perspective);
             set_plane(&mut self.varyings[slot], lane, varyings.terms[0]);
         }
-    }
-
-    /// A plane of one lane.
-    pub(crate) fn plane(lanes: &PlaneLanes, lane: usize) -> Plane {
-        Plane { c: lanes[0][lane], dx: lanes[1][lane], dy: lanes[2][lane] }
     }
 }
 

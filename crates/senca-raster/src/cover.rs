@@ -8,14 +8,17 @@
 //! 2. Blocks of 8 x 8 pixels wholly outside an edge, or wholly behind what is there, are passed over.
 //! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
 
-use crate::api::{ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, TextureUnit};
+use crate::api::{
+    ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, StencilOp, StencilTest,
+    TextureUnit,
+};
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
-use crate::setup::{Bounds, HALF, Plane, SUB, ScreenMap, ScreenVertex, SetupState};
+use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{FragmentStage, PixelColors, Pixels, StageNeeds};
 use crate::textured::{TextureQueue, Waiting};
 use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer, Touches};
-use fearless_simd::{Simd, f32x8, f32x16, i32x8, i32x16, mask32x8, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x16, i32x16, mask8x16, mask32x16, prelude::*, u8x16, u32x16};
 
 /// What a draw's kernel needs to know, the same for all its triangles.
 pub(crate) struct Pass<'a> {
@@ -32,6 +35,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) has_depth: bool,
     pub(crate) has_ids: bool,
     pub(crate) writes_depth: bool,
+    /// The stencil test, where it is done here.
+    pub(crate) stencil: Option<StencilTest>,
     /// The depth test passes nothing that is farther than what is there.
     pub(crate) hides_farther: bool,
     /// Farther and nearer are exchanged.
@@ -147,10 +152,6 @@ impl TileEdges {
     }
 }
 
-/// First pixels of a tile's columns of blocks.
-const BLOCK_X: [i32; BLOCKS] = [0, 8, 16, 24, 32, 40, 48, 56];
-const BLOCK_FX: [f32; BLOCKS] = [0., 8., 16., 24., 32., 40., 48., 56.];
-
 /// Lane numbers within a vector: column 0 to 7, row 0 or 1.
 const LANE_X: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const LANE_Y: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
@@ -201,12 +202,6 @@ pub(crate) fn along<S: Simd>(
     row + f32x16::splat(simd, p[1][lane]) * fx
 }
 
-/// [`Plane::at`] in eight columns of a row.
-#[inline(always)]
-fn plane_at<S: Simd>(simd: S, p: &Plane, fx: f32x8<S>, fy: f32) -> f32x8<S> {
-    f32x8::splat(simd, p.c + p.dy * fy) + f32x8::splat(simd, p.dx) * fx
-}
-
 /// Where a vector is.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Place {
@@ -248,116 +243,179 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let lanes =
             [edge_lanes(simd, b, 0, lane), edge_lanes(simd, b, 1, lane), edge_lanes(simd, b, 2, lane)];
         let (first, last) = (x0 >> 3, (x1 - 1) >> 3);
-        for by in y0 >> 3..=(y1 - 1) >> 3 {
-            let [active, full] = self.blocks(simd, lane, by, [first, last]);
-            if active == 0 {
-                continue;
-            }
-            if self.pass.touches.samples {
-                for bx in (first..=last).filter(|bx| active >> bx & 1 == 1) {
-                    self.block_of_samples(simd, lane, [bx, by], full >> bx & 1 == 1);
-                }
-                if full != 0 && self.pass.lowers_farthest {
-                    self.lower_farthest(simd, lane, by, full);
-                }
-                continue;
-            }
-            let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
-            if !FAST && self.pass.depth_only {
-                self.depths(simd, lane, &lanes, by, [top, bottom], [active, full]);
-            } else {
-                for pair in top..=bottom {
-                    self.row(simd, lane, &lanes, [by, pair], [active, full]);
+        let (top, bottom) = (y0 >> 3, (y1 - 1) >> 3);
+        if last - first > 1 {
+            // Two rows of blocks at a time.
+            for by in (top & !1..=bottom).step_by(2) {
+                let [active, full, level] = self.blocks(simd, lane, &lanes, by, [first, last], [top, bottom]);
+                self.fill_level(simd, lane, by, level);
+                let active = active & !level;
+                for row in 0..2 {
+                    let of_row = |bits: u32| bits >> (8 * row) & 255;
+                    self.row_of_blocks(
+                        simd,
+                        lane,
+                        &lanes,
+                        by + row,
+                        [y0, y1],
+                        [of_row(active), of_row(full)],
+                    );
                 }
             }
-            if full != 0 && self.pass.lowers_farthest {
-                self.lower_farthest(simd, lane, by, full);
+            return;
+        }
+        for by in top..=bottom {
+            let mut active = 0u32;
+            for bx in first..=last {
+                active |= u32::from(self.block(lane, bx, by)) << bx;
             }
+            self.row_of_blocks(simd, lane, &lanes, by, [y0, y1], [active, 0]);
         }
     }
 
-    /// Which blocks of row `by`, from column `first` to `last`, are to be drawn, and which of them the
-    /// triangle covers wholly, bit by bit. Brings in those that it touches.
+    /// Draws the blocks of a row that are `active`, of which those in `full` are wholly covered.
     #[inline(always)]
-    fn blocks<S: Simd>(&mut self, simd: S, lane: usize, by: i32, [first, last]: [i32; 2]) -> [u32; 2] {
-        let range = (2 << last) - (1 << first);
-        // Few blocks are not worth the tests.
-        let test = last - first > 1;
-        let [touched, whole] = if test { self.touched(simd, lane, by) } else { [range, 0] };
-        let touched = touched & range;
-        let row = self.first_block(by);
-        let mut missing = touched & !(self.buffer.present >> row) as u32;
+    fn row_of_blocks<S: Simd>(
+        &mut self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        by: i32,
+        [y0, y1]: [i32; 2],
+        [active, full]: [u32; 2],
+    ) {
+        if active == 0 {
+            return;
+        }
+        if self.pass.touches.samples {
+            for bx in (0..8).filter(|bx| active >> bx & 1 == 1) {
+                self.block_of_samples(simd, lane, [bx, by], full >> bx & 1 == 1);
+            }
+            return;
+        }
+        let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
+        if !FAST && self.pass.depth_only {
+            return self.depths(simd, lane, lanes, by, [top, bottom], [active, full]);
+        }
+        for pair in top..=bottom {
+            self.row(simd, lane, lanes, [by, pair], [active, full]);
+        }
+    }
+
+    /// Of two rows of blocks from `top` on the blocks that are to be drawn, those of them that the triangle
+    /// covers wholly, and those of these for [`Self::fill_level`], bit by bit. Brings them in.
+    #[inline(always)]
+    fn blocks<S: Simd>(
+        &mut self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        top: i32,
+        [first, last]: [i32; 2],
+        [first_row, last_row]: [i32; 2],
+    ) -> [u32; 3] {
+        let b = &*self.batch;
+        let zero = i32x16::splat(simd, 0);
+        let (mut most, mut least) = (zero, zero);
+        for (k, steps) in lanes.iter().enumerate() {
+            let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
+            // Between blocks the steps are eight times as large.
+            let at = (*steps << 3) + edge_at(simd, b, k, lane, 8 * top);
+            most |= at + i32x16::splat(simd, 7 * dx.max(0).wrapping_add(dy.max(0)));
+            least |= at + i32x16::splat(simd, 7 * dx.min(0).wrapping_add(dy.min(0)));
+        }
+        let columns = (255 >> (7 - (last - first))) << first;
+        let rows = u32::from(first_row <= top) * 0x00ff + u32::from(last_row > top) * 0xff00;
+        let mut active = most.simd_ge(zero).to_bitmask() as u32 & (columns | columns << 8) & rows;
+        let full = if self.partial { 0 } else { least.simd_ge(zero).to_bitmask() as u32 };
+        let at = (8 * top) as usize & 63;
+        let mut missing = u64::from(active) & !(self.buffer.present >> at);
         while missing != 0 {
-            let block = row + missing.trailing_zeros() as usize;
+            let block = at + missing.trailing_zeros() as usize;
             missing &= missing - 1;
             self.buffer.fetch(self.band, self.tile[0] as usize, block, &self.pass.touches);
         }
-        if !self.pass.hides_farther {
-            return [touched, touched & whole];
+        if !self.pass.hides_farther || active == 0 {
+            return [active, full & active, 0];
         }
-        let nearest = if test {
-            self.block_depths(simd, lane, by)[0]
-        } else if self.pass.reversed {
-            f32x8::splat(simd, -self.batch.z_max[lane])
-        } else {
-            f32x8::splat(simd, self.batch.z_min[lane])
-        };
-        let farthest = f32x8::from_slice(simd, &self.buffer.farthest[row..][..BLOCKS]);
-        let seen = touched & !(nearest.simd_gt(farthest).to_bitmask() as u32);
-        [seen, seen & whole]
+        let [nearest, farthest] = self.blocks_depth(simd, lane, top);
+        let Some(stored) = self.buffer.farthest.get_mut(at..at + LANES) else { return [0; 3] };
+        let known = f32x16::from_slice(simd, stored);
+        let level = (self.buffer.level & !self.buffer.written) >> at;
+        let fresh = if self.pass.depth_only { farthest.simd_lt(known).to_bitmask() & level } else { 0 };
+        active &= !(nearest.simd_gt(known).to_bitmask() as u32);
+        if full & active != 0 && self.pass.lowers_farthest {
+            // They will hold nothing farther than the triangle any more.
+            let covered = mask32x16::from_bitmask(simd, u64::from(full & active));
+            covered.select(known.min(farthest), known).store_slice(stored);
+        }
+        [active, full & active, full & active & fresh as u32]
     }
 
-    /// Number of the first block of a row.
+    /// Where depths are all that is drawn: writes those of the blocks in `level`, of two rows from `top` on, which
+    /// the triangle covers, and which had one depth everywhere, farther away than all of the triangle's.
     #[inline(always)]
-    fn first_block(&self, by: i32) -> usize {
-        (by as usize % BLOCKS) * BLOCKS
-    }
-
-    /// Which of the eight blocks of a row are not outside an edge, and which are inside all.
-    #[inline(always)]
-    fn touched<S: Simd>(&self, simd: S, lane: usize, by: i32) -> [u32; 2] {
+    fn fill_level<S: Simd>(&mut self, simd: S, lane: usize, top: i32, level: u32) {
+        if level == 0 {
+            return;
+        }
+        let at = (8 * top) as usize & 63;
         let b = &*self.batch;
-        let columns = i32x8::load_array(simd, BLOCK_X);
-        let (mut most, mut least) = (i32x8::splat(simd, 0), i32x8::splat(simd, 0));
-        for k in 0..3 {
-            let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
-            let row = b.edge[k][lane].wrapping_add(dy.wrapping_mul(8 * by));
-            let at = i32x8::splat(simd, row) + columns * i32x8::splat(simd, dx);
-            most |= at + i32x8::splat(simd, (7 * dx.max(0)).wrapping_add(7 * dy.max(0)));
-            least |= at + i32x8::splat(simd, (7 * dx.min(0)).wrapping_add(7 * dy.min(0)));
+        let (low, high) = (f32x16::splat(simd, b.z_min[lane]), f32x16::splat(simd, b.z_max[lane]));
+        let mut left = level;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let (bx, by) = ((bit % 8) as i32, top + (bit / 8) as i32);
+            let corner = [b.offset[0][lane] + 8 * bx, b.offset[1][lane] + 8 * by];
+            let [fx, fy] = lanes_from(simd, corner.map(|c| c as f32));
+            for (pair, plane) in self.buffer.depth[(at + bit) & 63].iter_mut().enumerate() {
+                let row = row_of(simd, &b.depth, lane, fy + f32x16::splat(simd, (2 * pair) as f32));
+                along(simd, &b.depth, lane, row, fx).max(low).min(high).store_array(plane);
+            }
         }
-        let zero = i32x8::splat(simd, 0);
-        let whole = if self.partial { 0 } else { least.simd_ge(zero).to_bitmask() as u32 };
-        [most.simd_ge(zero).to_bitmask() as u32, whole]
+        let count = 64 * u64::from(level.count_ones());
+        (self.counts.tested, self.counts.passed) = (self.counts.tested + count, self.counts.passed + count);
+        self.buffer.written |= u64::from(level) << at;
     }
 
-    /// Nearest and farthest depth of the triangle's plane over the blocks of a row, clamped to the
+    /// Nearest and farthest depth of the triangle's plane over the blocks of two rows, clamped to the
     /// triangle's; negated where the depth test is reversed. Rounding keeps order, so both are found at
-    /// corners, exactly, and the plane's slopes say at which.
+    /// corners, exactly.
     #[inline(always)]
-    fn block_depths<S: Simd>(&self, simd: S, lane: usize, by: i32) -> [f32x8<S>; 2] {
+    fn blocks_depth<S: Simd>(&self, simd: S, lane: usize, top: i32) -> [f32x16<S>; 2] {
         let b = &*self.batch;
-        let p = Batch::plane(&b.depth, lane);
-        let fx = f32x8::load_array(simd, BLOCK_FX) + f32x8::splat(simd, b.offset[0][lane] as f32);
-        let fy = (b.offset[1][lane] + 8 * by) as f32;
-        let [x_low, x_high] = if p.dx >= 0.0 { [0.0, 7.0] } else { [7.0, 0.0] };
-        let [y_low, y_high] = if p.dy >= 0.0 { [0.0, 7.0] } else { [7.0, 0.0] };
-        let low = plane_at(simd, &p, fx + f32x8::splat(simd, x_low), fy + y_low);
-        let high = plane_at(simd, &p, fx + f32x8::splat(simd, x_high), fy + y_high);
-        let (z_min, z_max) = (f32x8::splat(simd, b.z_min[lane]), f32x8::splat(simd, b.z_max[lane]));
-        let (low, high) = (low.max(z_min).min(z_max), high.max(z_min).min(z_max));
-        if self.pass.reversed { [-high, -low] } else { [low, high] }
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let first = |lanes: [i32; LANES], offset: i32| {
+            ((i32x16::load_array(simd, lanes) << 3) + i32x16::splat(simd, offset)).to_float::<f32x16<S>>()
+        };
+        let (fx, fy) = (first(LANE_X, b.offset[0][lane]), first(LANE_Y, b.offset[1][lane] + 8 * top));
+        let (left, right) = (fx, fx + splat(7.0));
+        let (upper, lower) =
+            (row_of(simd, &b.depth, lane, fy), row_of(simd, &b.depth, lane, fy + splat(7.0)));
+        let corners = [
+            along(simd, &b.depth, lane, upper, left),
+            along(simd, &b.depth, lane, upper, right),
+            along(simd, &b.depth, lane, lower, left),
+            along(simd, &b.depth, lane, lower, right),
+        ];
+        let (low, high) = (splat(b.z_min[lane]), splat(b.z_max[lane]));
+        let least = corners[0].min(corners[1]).min(corners[2].min(corners[3]));
+        let most = corners[0].max(corners[1]).max(corners[2].max(corners[3]));
+        let (least, most) = (least.max(low).min(high), most.max(low).min(high));
+        if self.pass.reversed { [splat(0.0) - most, splat(0.0) - least] } else { [least, most] }
     }
 
-    /// After blocks have been covered wholly: nothing in them is farther than the triangle any more.
+    /// Whether a block of a small triangle is to be drawn. Brings it in if so.
     #[inline(always)]
-    fn lower_farthest<S: Simd>(&mut self, simd: S, lane: usize, by: i32, full: u32) {
-        let farthest = self.block_depths(simd, lane, by)[1];
-        let row = self.first_block(by);
-        let stored = &mut self.buffer.farthest[row..][..BLOCKS];
-        let before = f32x8::from_slice(simd, stored);
-        let lower = mask32x8::from_bitmask(simd, u64::from(full)) & farthest.simd_lt(before);
-        lower.select(farthest, before).store_slice(stored);
+    fn block(&mut self, lane: usize, bx: i32, by: i32) -> bool {
+        let block = (by * 8 + bx) as usize & 63;
+        if self.buffer.present >> block & 1 == 0 {
+            self.buffer.fetch(self.band, self.tile[0] as usize, block, &self.pass.touches);
+        }
+        let b = &*self.batch;
+        let nearest = if self.pass.reversed { -b.z_max[lane] } else { b.z_min[lane] };
+        !self.pass.hides_farther || nearest <= self.buffer.farthest[block]
     }
 
     /// Two rows of pixels, block by block.
@@ -432,7 +490,16 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             pass &= compare(simd, self.pass.state.depth_test, z, stored);
         }
         self.counts.tested += u64::from(inside.to_bitmask().count_ones());
-        let bits = pass.to_bitmask() as u16;
+        let mut bits = pass.to_bitmask() as u16;
+        if let Some(test) = &self.pass.stencil {
+            let [passed, changed] =
+                stencil(simd, test, &mut self.buffer.stencil[block][pair], inside.to_bitmask() as u16, bits);
+            if changed != 0 {
+                self.buffer.written |= 1 << (block & 63);
+            }
+            bits = passed;
+            pass &= mask32x16::from_bitmask(simd, u64::from(bits));
+        }
         if bits == 0 {
             return;
         }
@@ -728,6 +795,56 @@ pub(crate) fn colors<S: Simd>(
             f32x16::splat(simd, 1.0)
         },
     ]
+}
+
+/// Does a stencil test on the lanes of `mask`, of which those in `nearer` pass the depth test. Returns
+/// the lanes that pass both, and those that may have changed.
+#[inline(always)]
+fn stencil<S: Simd>(
+    simd: S,
+    test: &StencilTest,
+    plane: &mut [u8; LANES],
+    mask: u16,
+    nearer: u16,
+) -> [u16; 2] {
+    let splat = |v: u8| u8x16::splat(simd, v);
+    let stored = u8x16::load_array_ref(simd, plane);
+    let (a, b) = (splat(test.reference & test.value_mask), stored & splat(test.value_mask));
+    let passes = match test.compare {
+        Compare::Never => mask8x16::splat(simd, false),
+        Compare::Less => a.simd_lt(b),
+        Compare::Equal => a.simd_eq(b),
+        Compare::LessEqual => a.simd_le(b),
+        Compare::Greater => a.simd_gt(b),
+        Compare::NotEqual => a.simd_ne(b),
+        Compare::GreaterEqual => a.simd_ge(b),
+        Compare::Always => mask8x16::splat(simd, true),
+    };
+    let passes = passes.to_bitmask() as u16 & mask;
+    let passed = passes & nearer;
+    let (mut value, mut changed) = (stored, 0);
+    for (op, lanes) in [(test.pass, passed), (test.depth_fail, passes & !nearer), (test.fail, mask & !passes)]
+    {
+        if op == StencilOp::Keep || lanes == 0 {
+            continue;
+        }
+        let after = match op {
+            StencilOp::Keep => stored,
+            StencilOp::Zero => splat(0),
+            StencilOp::Replace => splat(test.reference),
+            StencilOp::Increment => simd.saturating_add_u8x16(stored, splat(1)),
+            StencilOp::Decrement => simd.saturating_sub_u8x16(stored, splat(1)),
+            StencilOp::IncrementWrap => stored + splat(1),
+            StencilOp::DecrementWrap => stored - splat(1),
+            StencilOp::Invert => stored ^ splat(255),
+        };
+        value = mask8x16::from_bitmask(simd, u64::from(lanes)).select(after, value);
+        changed |= lanes;
+    }
+    if changed != 0 {
+        ((stored & splat(!test.write_mask)) | (value & splat(test.write_mask))).store_array(plane);
+    }
+    [passed, changed]
 }
 
 /// Which lanes of `new` pass against `stored`.

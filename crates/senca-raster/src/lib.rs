@@ -69,11 +69,12 @@ mod tiled;
 pub use api::{
     Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FragmentShader, Fragments, Ids,
     Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading, State,
-    StippleJoins, StrokeRule, TextureUnit, Viewport,
+    StencilOp, StencilTest, StippleJoins, StrokeRule, TextureUnit, Viewport,
 };
 pub use fearless_simd::{self as simd, Level as SimdLevel};
+pub use multisample::SAMPLES;
 pub use scanline::ScanlineRasterizer;
-pub use stage::{FragmentStage, PixelColors, Pixels};
+pub use stage::{FragmentStage, PixelColors, Pixels, Samples};
 pub use target::{
     Buffers, Clear, ClearMasks, ColorPlane, MAX_TARGET_SIDE, Target, TargetError, rgba8_from_rgba,
 };

@@ -5,13 +5,14 @@
 //! A block of 8 x 8 samples is 4 x 4 pixels. While a tile is drawn, vector `s` of a block holds sample
 //! `s` of its sixteen pixels, row by row: sample 0 upper left, 1 upper right, 2 and 3 below.
 
-use crate::api::{Fragments, LANES, MAX_VARYINGS, Shaded};
+use crate::api::{Fragments, LANES, MAX_VARYINGS};
 use crate::cover::{Place, TileDraw, varying};
-use crate::tile::{BLOCKS, Block};
+use crate::stage::{PixelColors, Pixels, Samples};
+use crate::tile::{BLOCKS, Block, ColorFormat};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// Samples of a pixel.
-pub(crate) const SAMPLES: usize = 4;
+pub const SAMPLES: usize = 4;
 
 /// Column and row of each lane's first sample in its block.
 const LANE_X: [i32; LANES] = [0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6];
@@ -55,9 +56,10 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     pub(crate) fn block_of_samples<S: Simd>(&mut self, simd: S, lane: usize, [bx, by]: [i32; 2], full: bool) {
         let block = (8 * by + bx) as usize & 63;
         let (mut masks, mut depths) = ([0u16; SAMPLES], [[0.0; LANES]; SAMPLES]);
+        let edges = self.samples_edges(simd, lane, [8 * bx, 8 * by], full);
         for s in 0..SAMPLES {
             let corner = [8 * bx + (s as i32 & 1), 8 * by + (s as i32 >> 1)];
-            let inside = self.samples_inside(simd, lane, corner, full);
+            let inside = self.samples_inside(simd, lane, &edges, s, corner, full);
             self.counts.tested += u64::from(inside.to_bitmask().count_ones());
             let z = self.samples_depth(simd, lane, corner.map(|c| c as f32));
             let mut pass = inside;
@@ -75,26 +77,49 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
     }
 
-    /// Lanes whose sample, that of lane 0 being at `corner` of the tile, may be drawn.
+    /// The edge functions at the first samples of a block, unless it is covered.
     #[inline(always)]
-    fn samples_inside<S: Simd>(&self, simd: S, lane: usize, [x, y]: [i32; 2], full: bool) -> mask32x16<S> {
+    fn samples_edges<S: Simd>(&self, simd: S, lane: usize, [x, y]: [i32; 2], full: bool) -> [i32x16<S>; 3] {
+        let mut edges = [i32x16::splat(simd, 0); 3];
+        if full {
+            return edges;
+        }
+        let (column, row) = (i32x16::load_array(simd, LANE_X), i32x16::load_array(simd, LANE_Y));
+        let b = &*self.batch;
+        for (k, edge) in edges.iter_mut().enumerate() {
+            let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
+            let first = b.edge[k][lane].wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y));
+            *edge =
+                column * i32x16::splat(simd, dx) + row * i32x16::splat(simd, dy) + i32x16::splat(simd, first);
+        }
+        edges
+    }
+
+    /// Lanes whose sample `s`, that of lane 0 being at (`x`, `y`) of the tile, may be drawn.
+    #[inline(always)]
+    fn samples_inside<S: Simd>(
+        &self,
+        simd: S,
+        lane: usize,
+        edges: &[i32x16<S>; 3],
+        s: usize,
+        [x, y]: [i32; 2],
+        full: bool,
+    ) -> mask32x16<S> {
         let mut inside = mask32x16::splat(simd, true);
         if full {
             return inside;
         }
-        let (column, row) = (i32x16::load_array(simd, LANE_X), i32x16::load_array(simd, LANE_Y));
         let b = &*self.batch;
         let mut all = i32x16::splat(simd, 0);
-        for k in 0..3 {
-            let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
-            let first = b.edge[k][lane].wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y));
-            let edge =
-                column * i32x16::splat(simd, dx) + row * i32x16::splat(simd, dy) + i32x16::splat(simd, first);
-            all |= edge;
+        for (k, edge) in edges.iter().enumerate() {
+            let step = b.edge_dx[k][lane] * (s as i32 & 1) + b.edge_dy[k][lane] * (s as i32 >> 1);
+            all |= *edge + i32x16::splat(simd, step);
         }
         inside &= all.simd_ge(i32x16::splat(simd, 0));
         if self.partial {
             let b = &self.bounds;
+            let (column, row) = (i32x16::load_array(simd, LANE_X), i32x16::load_array(simd, LANE_Y));
             let column = column + i32x16::splat(simd, self.tile[0] + x);
             let row = row + i32x16::splat(simd, self.tile[1] + y);
             inside &= column.simd_ge(i32x16::splat(simd, b.x0))
@@ -161,19 +186,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             front: self.batch.swapped >> lane & 1 == 1,
             coverage: None,
         };
-        let mut shaded = Shaded::default();
         self.counts.shaded += u64::from(any.count_ones());
-        if self.pass.needs.shades {
-            stage.shade(&fragments, &mut shaded);
-        }
-        for s in 0..SAMPLES {
-            let mask = masks[s] & shaded.keep;
-            if mask == 0 {
+        let samples = Samples { masks: *masks, depths };
+        let passed = stage.shade_and_merge_samples(&fragments, &samples, &mut self.pixels_of_samples(block));
+        for (s, passed) in passed.into_iter().enumerate() {
+            let passed = passed & masks[s];
+            if passed == 0 {
                 continue;
             }
-            let sample = Fragments { mask, sample: s, depth: depths[s], ..fragments };
-            let place = Place { pair: s, ..place };
-            let passed = stage.merge(&sample, &shaded, &mut self.pixels(place)) & mask;
             self.counts.passed += u64::from(passed.count_ones());
             let keep = mask32x16::from_bitmask(simd, u64::from(passed));
             if self.pass.writes_depth {
@@ -188,6 +208,36 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             }
         }
         self.batch.interpolated = values;
+    }
+
+    /// The samples of a block, for the stage.
+    #[inline(always)]
+    fn pixels_of_samples(&mut self, block: usize) -> [Pixels<'_>; SAMPLES] {
+        let (pass, buffer) = (self.pass, &mut *self.buffer);
+        let has_stencil = self.band.stencil.is_some() && pass.needs.stencil;
+        let [r, g, b, a] = &mut buffer.rgba;
+        let [c0, c1, c2, c3] = match pass.format {
+            ColorFormat::Rgba8 if pass.needs.color => buffer.rgba8[block].each_mut().map(PixelColors::Rgba8),
+            ColorFormat::Rgba32F if pass.needs.color => {
+                let [r0, r1, r2, r3] = r[block].each_mut();
+                let [g0, g1, g2, g3] = g[block].each_mut();
+                let [b0, b1, b2, b3] = b[block].each_mut();
+                let [a0, a1, a2, a3] = a[block].each_mut();
+                let planes = [[r0, g0, b0, a0], [r1, g1, b1, a1], [r2, g2, b2, a2], [r3, g3, b3, a3]];
+                planes.map(PixelColors::Rgba32F)
+            }
+            _ => [PixelColors::None, PixelColors::None, PixelColors::None, PixelColors::None],
+        };
+        let [d0, d1, d2, d3] = buffer.depth[block].each_mut();
+        let [s0, s1, s2, s3] = buffer.stencil[block].each_mut();
+        let depth = |plane| Some(plane).filter(|_| pass.touches.reads_depth);
+        let stencil = |plane| Some(plane).filter(|_| has_stencil);
+        [
+            Pixels { color: c0, depth: depth(d0), stencil: stencil(s0) },
+            Pixels { color: c1, depth: depth(d1), stencil: stencil(s1) },
+            Pixels { color: c2, depth: depth(d2), stencil: stencil(s2) },
+            Pixels { color: c3, depth: depth(d3), stencil: stencil(s3) },
+        ]
     }
 }
 

@@ -13,6 +13,21 @@ pub(crate) fn depth_passes(target: &Target<'_>, state: &State, x: i32, y: i32, d
     target.depth.as_ref().is_none_or(|plane| state.depth_test.passes(depth, plane[index(target, x, y)]))
 }
 
+/// Whether a fragment passes the stencil and the depth test at a pixel. Does what the stencil test does.
+pub(crate) fn passes(target: &mut Target<'_>, state: &State, x: i32, y: i32, depth: f32) -> bool {
+    let nearer = depth_passes(target, state, x, y, depth);
+    let at = index(target, x, y);
+    let (Some(test), Some(plane)) = (&state.stencil, &mut target.stencil) else { return nearer };
+    let (stored, passes) = (plane[at], test.passes(plane[at]));
+    let op = match (passes, nearer) {
+        (false, _) => test.fail,
+        (true, false) => test.depth_fail,
+        (true, true) => test.pass,
+    };
+    plane[at] = test.after(op, stored);
+    passes && nearer
+}
+
 /// Writes a fragment that has passed.
 pub(crate) fn write(
     target: &mut Target<'_>,

@@ -165,7 +165,11 @@ impl RowFiller<'_, '_> {
             let [fx, fy] = self.offset(x, y);
             let depth = self.setup.depth(fx, fy);
             self.counters.tested += 1;
-            if self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth) {
+            let passes = match stage_of(self.shading) {
+                Some(_) => self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth),
+                None => crate::pixel::passes(self.target, self.state, x, y, depth),
+            };
+            if passes {
                 let lane = first_lane + (x & 7) as usize;
                 batch.mask |= 1 << lane;
                 batch.depth[lane] = depth;

@@ -127,7 +127,8 @@ impl<'a, 't> Sink<'a, 't> {
     /// The planes, where fragments go in plain colours, unblended, to 8 bits.
     pub(crate) fn plain(&mut self) -> Option<Plain<'_>> {
         let Shading::Fixed { color, texture: None } = self.shading else { return None };
-        let simple = self.state.blend.is_none() && self.target.ids.is_none();
+        let stencil = self.state.stencil.is_some() && self.target.stencil.is_some();
+        let simple = self.state.blend.is_none() && self.target.ids.is_none() && !stencil;
         let width = self.target.width as usize;
         let Some(ColorPlane::Rgba8(pixels)) = self.target.color.as_mut().filter(|_| simple) else {
             return None;
@@ -162,7 +163,13 @@ impl<'a, 't> Sink<'a, 't> {
         let (x, y) = (x as i32, y as i32);
         let row = y - self.first_row;
         self.counters.tested += 1;
-        if self.tests_depth && !crate::pixel::depth_passes(self.target, self.state, x, row, depth) {
+        let passes = match self.shading {
+            Shading::Stage(_) => {
+                !self.tests_depth || crate::pixel::depth_passes(self.target, self.state, x, row, depth)
+            }
+            _ => crate::pixel::passes(self.target, self.state, x, row, depth),
+        };
+        if !passes {
             return;
         }
         if self.batched {

@@ -63,6 +63,38 @@ pub trait FragmentStage: Sync {
         let kept = Fragments { mask: fragments.mask & shaded.keep, ..*fragments };
         if kept.mask == 0 { 0 } else { self.merge(&kept, &shaded, pixels) & kept.mask }
     }
+
+    /// The same where pixels have several samples: colours `fragments` once and merges `samples`, each into its
+    /// own of `pixels`. Returns the lanes that have passed all tests, for each sample.
+    fn shade_and_merge_samples(
+        &self,
+        fragments: &Fragments<'_>,
+        samples: &Samples<'_>,
+        pixels: &mut [Pixels<'_>; SAMPLES],
+    ) -> [u16; SAMPLES] {
+        let mut shaded = Shaded::default();
+        if self.shades() {
+            self.shade(fragments, &mut shaded);
+        }
+        let mut passed = [0; SAMPLES];
+        for (s, pixels) in pixels.iter_mut().enumerate() {
+            let mask = samples.masks[s] & shaded.keep;
+            if mask != 0 {
+                let sample = Fragments { mask, sample: s, depth: samples.depths[s], ..*fragments };
+                passed[s] = self.merge(&sample, &shaded, pixels) & mask;
+            }
+        }
+        passed
+    }
+}
+
+/// The samples of sixteen pixels that a primitive covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples<'a> {
+    /// Lanes, for each sample.
+    pub masks: [u16; SAMPLES],
+    /// Depths of the samples.
+    pub depths: &'a [[f32; LANES]; SAMPLES],
 }
 
 /// Sixteen pixels of a target, in the lanes of [`Fragments`].

@@ -135,6 +135,8 @@ pub(crate) struct TileBuffer {
     pub(crate) present: u64,
     /// Those of them in which something may have been written.
     pub(crate) written: u64,
+    /// Those of them whose depths were cleared: unless written, all are [`Self::farthest`].
+    pub(crate) level: u64,
 }
 
 impl Default for TileBuffer {
@@ -148,6 +150,7 @@ impl Default for TileBuffer {
             farthest: [f32::INFINITY; BLOCKS * BLOCKS],
             present: 0,
             written: 0,
+            level: 0,
         }
     }
 }
@@ -181,6 +184,7 @@ impl TileBuffer {
                 Some(depth) => fill(&mut self.depth[block], depth),
                 None => fetch_plane(&mut self.depth[block], plane, band, tile_x, block),
             }
+            self.level |= u64::from(cleared_depth.is_some()) << block;
             self.farthest[block] = match cleared_depth {
                 Some(depth) if touches.reversed => -depth,
                 Some(depth) => depth,
@@ -296,7 +300,7 @@ impl TileBuffer {
     pub(crate) fn store(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
         let clear = touches.clear;
         let (width, height) = (band.width, band.height);
-        self.present = 0;
+        (self.present, self.level) = (0, 0);
         let present = std::mem::take(&mut self.written);
         if present == 0 && clear.is_none() {
             return;

@@ -272,8 +272,9 @@ fn pass<'a>(
     let tests_depth = reads_depth && !needs.tests_depth;
     let reversed = matches!(state.depth_test, Compare::Greater | Compare::GreaterEqual);
     let ordered = reversed || matches!(state.depth_test, Compare::Less | Compare::LessEqual);
-    let hides_farther = tests_depth && ordered;
-    let drops = if stage.is_some() { needs.discards } else { custom };
+    let stencil = state.stencil.filter(|_| stage.is_none() && target.stencil.is_some());
+    let hides_farther = tests_depth && ordered && !stencil.is_some_and(|test| test.needs_failures());
+    let drops = if stage.is_some() { needs.discards } else { custom || stencil.is_some() };
     let slots = slots(shading, color, triangles.stride);
     let texture = match shading {
         Shading::Fixed { texture: Some(unit), .. } if color != ColorPath::None => {
@@ -291,7 +292,7 @@ fn pass<'a>(
             color: if stage.is_some() { needs.color } else { color != ColorPath::None },
             depth: has_depth && (state.depth_write || needs.tests_depth),
             reads_depth,
-            stencil: needs.stencil,
+            stencil: needs.stencil || stencil.is_some(),
             reversed,
             samples: state.multisample && stage.is_some(),
         },
@@ -301,6 +302,7 @@ fn pass<'a>(
         has_depth: tests_depth,
         has_ids: target.ids.is_some(),
         writes_depth: tests_depth && state.depth_write,
+        stencil,
         hides_farther,
         reversed,
         lowers_farthest: hides_farther && state.depth_write && !drops,
@@ -309,6 +311,7 @@ fn pass<'a>(
             && state.depth_write
             && stage.is_none()
             && color == ColorPath::None
+            && stencil.is_none()
             && target.ids.is_none(),
         color,
         texture,

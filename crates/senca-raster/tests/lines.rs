@@ -172,6 +172,7 @@ const OPENGL: State = State {
     strokes: StrokeRule::OpenGl,
     stipple: None,
     multisample: false,
+    stencil: None,
     antialias: false,
 };
 

@@ -3,8 +3,9 @@
 
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Clear, ClearMasks, ColorPlane, Compare, FragmentStage, Fragments, Ids, PixelColors, Pixels, Primitives,
-    Rasterizer, Rect, ScanlineRasterizer, Shaded, Shading, State, Target, TiledRasterizer, TiledSettings,
+    Blend, Clear, ClearMasks, ColorPlane, Compare, Draw, FragmentStage, Fragments, Ids, PixelColors, Pixels,
+    Primitives, Rasterizer, Rect, ScanlineRasterizer, Shaded, Shading, State, StencilOp, StencilTest, Target,
+    TiledRasterizer, TiledSettings,
 };
 
 /// Counts coverage in the stencil plane, adds colours, and drops what it is told to.
@@ -164,6 +165,96 @@ fn both_rasterizers_run_stages_alike() {
                     assert!(plain == tiled, "{compare:?}, {k}, {threads} threads, {multisample}");
                 }
             }
+        }
+    }
+}
+
+/// A stencil test of some kind.
+fn stencil_test(k: usize) -> StencilTest {
+    use StencilOp::{Decrement, DecrementWrap, Increment, IncrementWrap, Invert, Keep, Replace, Zero};
+    let ops = [Increment, Decrement, Keep, Replace, Zero, IncrementWrap, DecrementWrap, Invert];
+    let compares = [
+        Compare::Always,
+        Compare::Equal,
+        Compare::NotEqual,
+        Compare::Less,
+        Compare::LessEqual,
+        Compare::Greater,
+        Compare::GreaterEqual,
+        Compare::Never,
+    ];
+    StencilTest {
+        compare: compares[k / 3 % 8],
+        reference: (3 + k % 5) as u8,
+        value_mask: [0xff, 0x0f, 0x55][k % 3],
+        write_mask: [0xff, 0xff, 0x3c, 0][k % 4],
+        fail: if k % 4 == 1 { Keep } else { ops[k % 8] },
+        depth_fail: if k % 4 == 1 { Keep } else { ops[(k + 3) % 8] },
+        pass: ops[(k + 5) % 8],
+    }
+}
+
+#[test]
+fn draws_together_are_draws_one_after_another() {
+    let (positions, varyings, indices) = triangles(90);
+    let compares = [Compare::LessEqual, Compare::Greater, Compare::Always, Compare::Less, Compare::Equal];
+    let stage = Counting { keeps_all: true, ..Counting::default() };
+    let dropping = Counting { tests_depth: true, compare: Compare::GreaterEqual, ..Counting::default() };
+    let late = Counting { compare: Compare::Less, ..stage };
+    for n in 0..60usize {
+        let draw = |k: usize| {
+            let at = (7 * n + 31 * k) % 240;
+            let cleared = Clear { depth: Some(0.9), stencil: Some(4), ..Clear::default() };
+            let state = State {
+                depth_test: compares[(n + 2 * k) % 5],
+                depth_write: (n + k) % 4 != 1,
+                stencil: ((n ^ k) % 3 != 0).then(|| stencil_test(n + 5 * k)),
+                blend: ((n + k) % 7 == 2).then_some(Blend::ADD),
+                clear: (k == 0 && n % 2 == 0 || n == 9 && k == 2).then_some(cleared),
+                scissor: (n + k == 11).then_some(Rect { x: 3, y: 5, width: 60, height: 50 }),
+                multisample: n % 4 >= 2,
+                ..State::default()
+            };
+            let shading = match (n / 4 + k) % 5 {
+                0 | 3 => Shading::None,
+                1 => Shading::constant([0.2, 0.3, 0.1, 0.5]),
+                2 => Shading::Stage(&late),
+                _ => Shading::Stage(if n % 3 == 0 { &dropping } else { &stage }),
+            };
+            let triangles = Primitives {
+                positions: &positions,
+                varyings: &varyings,
+                stride: 3,
+                indices: &indices[at..(at + 30 + 60 * (k % 2)).min(270)],
+                ids: Ids::From(10 * k as u32),
+            };
+            Draw { triangles, state, shading }
+        };
+        let draws: Vec<Draw<'_>> = (0..4).map(draw).collect();
+        let with = |draw: &mut dyn FnMut(&mut Target<'_>)| {
+            let mut planes = Planes::new([146, 130], 0.5);
+            // Identifiers keep the rasterizer from some short cuts.
+            let ids = std::mem::take(&mut planes.ids);
+            let mut target = Target::new(146, 130)
+                .and_then(|t| t.with_color(ColorPlane::Rgba8(&mut planes.color8)))
+                .and_then(|t| t.with_depth(&mut planes.depth))
+                .and_then(|t| t.with_stencil(&mut planes.stencil))
+                .unwrap();
+            draw(&mut target);
+            planes.ids = ids;
+            planes.bits()
+        };
+        let plain = with(&mut |target| {
+            for d in &draws {
+                ScanlineRasterizer.draw(target, &d.triangles, &d.state, &d.shading);
+            }
+        });
+        for threads in [1, 3] {
+            let settings = TiledSettings { threads, ..TiledSettings::default() };
+            let together = with(&mut |target| {
+                TiledRasterizer::new(settings).draw_all(target, &draws);
+            });
+            assert!(plain == together, "number {n}, {threads} threads");
         }
     }
 }

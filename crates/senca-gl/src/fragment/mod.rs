@@ -30,7 +30,9 @@ use fast::{FastTexture, compares_lanes, packed, plane, unpacked};
 use ops::{ColorWrite, Stencil, compares, logic};
 use real::{Color, clamped, constant};
 use senca_raster::simd::{Simd, dispatch, f32x16, mask32x16, prelude::*, u32x16};
-use senca_raster::{FragmentStage, Fragments, LANES, PixelColors, Pixels, Shaded, SimdLevel};
+use senca_raster::{
+    FragmentStage, Fragments, LANES, PixelColors, Pixels, SAMPLES, Samples, Shaded, SimdLevel,
+};
 
 /// The depth test, where the rasterizer must not do it.
 #[derive(Clone, Copy, Debug)]
@@ -310,12 +312,7 @@ impl Program {
         new: Color<f32x16<S>>,
         pixels: &mut Pixels<'_>,
     ) -> u16 {
-        let mut passed = f.mask;
-        if let (Some(stencil), None, Some(plane)) = (&self.stencil, &self.depth, &mut pixels.stencil) {
-            passed = fast::stencil(simd, stencil, plane, f.mask);
-        } else if self.stencil.is_some() {
-            passed = f.lanes().filter(|&i| self.passes(f, pixels, i)).fold(0, |mask, i| mask | 1 << i);
-        }
+        let passed = self.tested(simd, f, pixels);
         if passed == 0 || !self.writes_color {
             return passed;
         }
@@ -465,6 +462,104 @@ impl FragmentStage for Program {
             return 0;
         }
         dispatch!(self.level, simd => self.run_fast(simd, &f, pixels))
+    }
+
+    fn shade_and_merge_samples(
+        &self,
+        fragments: &Fragments<'_>,
+        samples: &Samples<'_>,
+        pixels: &mut [Pixels<'_>; SAMPLES],
+    ) -> [u16; SAMPLES] {
+        if self.plain || self.samples.is_some() {
+            return Each(self).shade_and_merge_samples(fragments, samples, pixels);
+        }
+        let f = Fragments { mask: fragments.mask & self.stippled(fragments), ..*fragments };
+        if f.mask == 0 {
+            return [0; SAMPLES];
+        }
+        dispatch!(self.level, simd => self.run_samples(simd, &f, samples, pixels))
+    }
+}
+
+/// A program that merges samples one after another.
+struct Each<'a>(&'a Program);
+
+impl FragmentStage for Each<'_> {
+    fn shades(&self) -> bool {
+        self.0.shades()
+    }
+
+    fn shade(&self, fragments: &Fragments<'_>, out: &mut Shaded) {
+        self.0.shade(fragments, out);
+    }
+
+    fn merge(&self, fragments: &Fragments<'_>, shaded: &Shaded, pixels: &mut Pixels<'_>) -> u16 {
+        self.0.merge(fragments, shaded, pixels)
+    }
+}
+
+impl Program {
+    /// Shades pixels and merges their samples.
+    #[inline(always)]
+    fn run_samples<S: Simd>(
+        &self,
+        simd: S,
+        f: &Fragments<'_>,
+        samples: &Samples<'_>,
+        pixels: &mut [Pixels<'_>; SAMPLES],
+    ) -> [u16; SAMPLES] {
+        let (color, kept) = self.shaded(simd, f);
+        let kept = kept & f.mask;
+        let opaque = self.color.blending.is_none() && self.color.logic_op.is_none();
+        let word = packed(clamped(color));
+        let mut passed = [0; SAMPLES];
+        for (s, pixels) in pixels.iter_mut().enumerate() {
+            let mask = samples.masks[s] & kept;
+            if mask == 0 {
+                continue;
+            }
+            let f = Fragments { mask, sample: s, depth: samples.depths[s], ..*f };
+            passed[s] = if opaque && let PixelColors::Rgba8(_) = pixels.color {
+                self.merge_word(simd, &f, word, pixels)
+            } else {
+                self.merge_fast(simd, &f, color, pixels)
+            };
+        }
+        passed
+    }
+
+    /// Merges colours that are neither blended nor combined with what is there, ready to be stored.
+    #[inline(always)]
+    fn merge_word<S: Simd>(
+        &self,
+        simd: S,
+        f: &Fragments<'_>,
+        word: u32x16<S>,
+        pixels: &mut Pixels<'_>,
+    ) -> u16 {
+        let passed = self.tested(simd, f, pixels);
+        if let PixelColors::Rgba8(plane) = &mut pixels.color
+            && self.writes_color
+            && passed != 0
+        {
+            let stored = u32x16::load_array_ref(simd, plane);
+            let bits = self.color.bits();
+            let word = (stored & u32x16::splat(simd, !bits)) | (word & u32x16::splat(simd, bits));
+            mask32x16::from_bitmask(simd, u64::from(passed)).select(word, stored).store_array(plane);
+        }
+        passed
+    }
+
+    /// Lanes that pass the stencil test, and that of depth if it is done here, with what the tests do.
+    #[inline(always)]
+    fn tested<S: Simd>(&self, simd: S, f: &Fragments<'_>, pixels: &mut Pixels<'_>) -> u16 {
+        if let (Some(stencil), None, Some(plane)) = (&self.stencil, &self.depth, &mut pixels.stencil) {
+            return fast::stencil(simd, stencil, plane, f.mask);
+        }
+        if self.stencil.is_none() {
+            return f.mask;
+        }
+        f.lanes().filter(|&i| self.passes(f, pixels, i)).fold(0, |mask, i| mask | 1 << i)
     }
 }
 

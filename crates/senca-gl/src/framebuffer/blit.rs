@@ -7,6 +7,10 @@
 
 use super::plane::{Area, Plane};
 use crate::texture::Texels;
+use rayon::prelude::*;
+
+/// Rows that a thread takes at once.
+const ROWS: usize = 32;
 
 /// Corners of the rectangles, of which each may be turned round.
 #[derive(Clone, Copy, Debug)]
@@ -159,6 +163,14 @@ impl Nearest {
         }
     }
 
+    /// If the columns from one on come from columns side by side: that one, and the first of those.
+    fn run(&self) -> Option<(usize, usize)> {
+        let skip = self.columns.iter().position(Option::is_some)?;
+        let first = self.columns[skip]?;
+        let beside = (first..).zip(&self.columns[skip..]).all(|(x, column)| *column == Some(x));
+        beside.then_some((skip, first))
+    }
+
     fn at(&self, x: i32, y: i32, area: Area) -> Option<(usize, usize)> {
         Some((self.columns[(x - area.x0) as usize]?, self.rows[(y - area.y0) as usize]?))
     }
@@ -251,26 +263,41 @@ fn blit_samples(source: &Plane, destination: &mut Plane, nearest: &Nearest, area
 /// Means of four samples of 8 bits: the fast form of the resolve.
 fn resolve8(source: &Plane, from: &[[u8; 4]], destination: &mut Plane, nearest: &Nearest, area: Area) {
     let base = destination.format.base();
-    for y in area.y0..area.y1 {
-        let Some(from_y) = nearest.rows[(y - area.y0) as usize] else { continue };
+    let (first, stride) = (destination.at(0, area.y0 as usize), destination.stride());
+    let lines = area.lines(1).len();
+    let (run, to_x) = (nearest.run(), area.x0 as usize);
+    let Texels::Rgba8(colors) = destination.texels_mut() else { return };
+    let rows = colors[first..first + lines * stride].par_chunks_mut(stride).zip(&nearest.rows);
+    rows.with_min_len(ROWS).for_each(|(to, from_y)| {
+        let Some(from_y) = from_y else { return };
         let low = &from[source.at(0, 2 * from_y)..][..source.stride()];
         let high = &from[source.at(0, 2 * from_y + 1)..][..source.stride()];
-        let to = destination.at(area.x0 as usize, y as usize);
-        let Texels::Rgba8(colors) = destination.texels_mut() else { return };
-        for (texel, column) in colors[to..].iter_mut().zip(&nearest.columns) {
-            let Some(x) = column.map(|x| 2 * x) else { continue };
-            let [a, b, c, d] = [low[x], low[x + 1], high[x], high[x + 1]];
-            let mean = |i: usize| {
-                let sum = u16::from(a[i]) + u16::from(b[i]) + u16::from(c[i]) + u16::from(d[i]);
-                ((sum + 2) >> 2) as u8
-            };
-            *texel = base.stored([mean(0), mean(1), mean(2), mean(3)], 255);
+        let to = &mut to[to_x..];
+        if let Some((skip, x)) = run {
+            let pairs = low[2 * x..].as_chunks::<2>().0.iter().zip(high[2 * x..].as_chunks::<2>().0);
+            for (texel, (low, high)) in to[skip..nearest.columns.len()].iter_mut().zip(pairs) {
+                *texel = base.stored(mean([low[0], low[1], high[0], high[1]]), 255);
+            }
+            return;
         }
-    }
+        for (texel, column) in to.iter_mut().zip(&nearest.columns) {
+            let Some(x) = column.map(|x| 2 * x) else { continue };
+            *texel = base.stored(mean([low[x], low[x + 1], high[x], high[x + 1]]), 255);
+        }
+    });
+}
+
+/// The mean of four colours, rounded, two components at a time.
+#[inline]
+fn mean(colors: [[u8; 4]; 4]) -> [u8; 4] {
+    const HALF: u32 = 0x00ff_00ff;
+    let words = colors.map(u32::from_le_bytes);
+    let sum = |shift: u32| words.iter().fold(0x0002_0002, |sum, word| sum + (word >> shift & HALF));
+    (sum(0) >> 2 & HALF | (sum(8) >> 2 & HALF) << 8).to_le_bytes()
 }
 
 /// Depths or stencil values: sample by sample, or the first of the source to all of the destination.
-fn blit_values<T: Copy>(
+fn blit_values<T: Copy + Send + Sync>(
     source: &Plane,
     destination: &mut Plane,
     nearest: &Nearest,
@@ -279,21 +306,25 @@ fn blit_values<T: Copy>(
     write: impl Fn(&mut Texels) -> Option<&mut [T]>,
 ) {
     let (from_side, to_side) = (source.side(), destination.side());
-    let (first, stride) = (destination.first, destination.stride());
+    let (first, stride) = (destination.at(0, area.y0 as usize * to_side), destination.stride());
+    let lines = area.lines(1).len();
     let Some(from) = read(&source.texels) else { return };
     let Some(to) = write(destination.texels_mut()) else { return };
-    for y in area.y0..area.y1 {
-        for x in area.x0..area.x1 {
-            let Some((from_x, from_y)) = nearest.at(x, y, area) else { continue };
-            for j in 0..to_side {
-                for i in 0..to_side {
-                    let (a, b) = (from_x * from_side + i % from_side, from_y * from_side + j % from_side);
-                    let at = first + (y as usize * to_side + j) * stride + x as usize * to_side + i;
-                    to[at] = from[source.at(a, b)];
+    let to = &mut to[first..first + lines * to_side * stride];
+    let rows = to.par_chunks_mut(to_side * stride).zip(&nearest.rows);
+    rows.with_min_len(ROWS).for_each(|(to, from_y)| {
+        let Some(from_y) = from_y else { return };
+        for (j, to) in to.chunks_exact_mut(stride).enumerate() {
+            let from = &from[source.at(0, from_y * from_side + j % from_side)..][..source.stride()];
+            let to = to[area.x0 as usize * to_side..].chunks_exact_mut(to_side);
+            for (to, from_x) in to.zip(&nearest.columns) {
+                let Some(from_x) = from_x else { continue };
+                for (i, to) in to.iter_mut().enumerate() {
+                    *to = from[from_x * from_side + i % from_side];
                 }
             }
         }
-    }
+    });
 }
 
 #[cfg(test)]

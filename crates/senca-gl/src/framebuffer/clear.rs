@@ -16,8 +16,6 @@ pub(crate) struct WaitingClear {
     pub(crate) values: Clear,
     /// Width and height of what is drawn to.
     pub(crate) size: [u32; 2],
-    /// Samples of what is drawn to.
-    pub(crate) samples: u32,
 }
 
 /// The buffers that `glClear` takes.
@@ -143,7 +141,7 @@ impl Context {
             values.stencil = Some(s.stencil.clear as u8);
         }
         let size = [planes.width, planes.height];
-        Some(WaitingClear { values, size, samples: planes.samples })
+        Some(WaitingClear { values, size })
     }
 
     /// Does the clear that waits.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use senca_raster::{ColorPlane, Target};
 
 use super::attach::Attachment;
@@ -166,6 +167,7 @@ impl DrawPlanes {
     pub(crate) fn draw<R: Default>(
         &mut self,
         multisample: bool,
+        uses: &Uses,
         mut draw: impl FnMut(Target<'_>, u32) -> R,
     ) -> R {
         let count = self.colors.len().max(1);
@@ -173,7 +175,7 @@ impl DrawPlanes {
         for i in 0..count {
             let kept = (i + 1 < count).then(|| [&self.depth, &self.stencil].map(texels_of));
             let drawn = if self.samples > 0 && !multisample {
-                self.draw_single(i, &mut draw)
+                self.draw_single(i, uses, &mut draw)
             } else {
                 self.draw_one(i, &mut draw)
             };
@@ -242,13 +244,21 @@ impl DrawPlanes {
 
     /// As [`draw_one`](Self::draw_one) for planes of several samples: draws to one sample of each pixel, and gives
     /// all samples of the pixels that changed what it has become.
-    fn draw_single<R>(&mut self, i: usize, draw: &mut impl FnMut(Target<'_>, u32) -> R) -> Option<R> {
+    fn draw_single<R>(
+        &mut self,
+        i: usize,
+        uses: &Uses,
+        draw: &mut impl FnMut(Target<'_>, u32) -> R,
+    ) -> Option<R> {
         let mut copies = self.copies(i, 0)?;
-        copies.each_pair(self, i, |copy, plane| first_samples(plane, copy));
+        copies.each_pair(self, i, |copy, plane| first_samples(plane, copy, uses));
         let result = copies.draw_one(0, draw)?;
-        let mut changed = vec![false; self.width as usize * self.height as usize];
-        copies.each_pair(self, i, |copy, plane| mark_changes(copy, plane, &mut changed));
-        copies.each_pair(self, i, |copy, plane| spread(copy, plane, &changed));
+        let mut changed = Vec::new();
+        if uses.0.contains(&Use::Changed) {
+            changed.resize(self.width as usize * self.height as usize, false);
+            copies.each_pair(self, i, |copy, plane| mark_changes(copy, plane, uses, &mut changed));
+        }
+        copies.each_pair(self, i, |copy, plane| spread(copy, plane, uses, &changed));
         Some(result)
     }
 
@@ -276,21 +286,49 @@ impl DrawPlanes {
     }
 }
 
-/// Calls a function with the values of two planes of the same kind, and of what they have two kinds, twice.
+/// What a draw does to the values of a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Use {
+    /// It leaves them alone.
+    Kept,
+    /// It may change some.
+    Changed,
+    /// It sets all of them.
+    Cleared,
+}
+
+/// What a draw does to colours, depths and stencil values.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Uses(pub(crate) [Use; 3]);
+
+/// Calls a function with the values of two planes of the same kind and their place in [`Uses`], and of what they
+/// have two kinds, twice.
 macro_rules! for_values {
-    ($a:expr, $b:expr, |$x:ident, $y:ident| $act:expr) => {
+    ($a:expr, $b:expr, |$x:ident, $y:ident, $of:ident| $act:expr) => {
         match ($a, $b) {
-            (Texels::Rgba8($x), Texels::Rgba8($y)) => $act,
-            (Texels::Rgba32F($x), Texels::Rgba32F($y)) => $act,
-            (Texels::Depth($x), Texels::Depth($y)) => $act,
-            (Texels::Stencil($x), Texels::Stencil($y)) => $act,
+            (Texels::Rgba8($x), Texels::Rgba8($y)) => {
+                let $of = 0;
+                $act
+            }
+            (Texels::Rgba32F($x), Texels::Rgba32F($y)) => {
+                let $of = 0;
+                $act
+            }
+            (Texels::Depth($x), Texels::Depth($y)) => {
+                let $of = 1;
+                $act
+            }
+            (Texels::Stencil($x), Texels::Stencil($y)) => {
+                let $of = 2;
+                $act
+            }
             (
                 Texels::DepthStencil { depth: d1, stencil: s1 },
                 Texels::DepthStencil { depth: d2, stencil: s2 },
             ) => {
-                let ($x, $y) = (d1, d2);
+                let ($x, $y, $of) = (d1, d2, 1);
                 $act;
-                let ($x, $y) = (s1, s2);
+                let ($x, $y, $of) = (s1, s2, 2);
                 $act;
             }
             _ => {}
@@ -298,59 +336,62 @@ macro_rules! for_values {
     };
 }
 
-/// Rows of pixels of a plane of one sample, and where those of another one have the samples of each: the upper
-/// and the lower ones, two for each pixel.
-fn rows_of_both(
-    one: &Plane,
-    four: &Plane,
-) -> impl Iterator<Item = (Range<usize>, [Range<usize>; 2])> + use<> {
-    let (width, rows) = (one.stride(), one.rows());
-    let (first, stride, to) = (four.at(0, 0), four.stride(), one.at(0, 0));
-    (0..rows).map(move |y| {
-        let start = |row: usize| first + row * stride;
-        let [upper, lower] = [start(2 * y), start(2 * y + 1)];
-        (to + y * width..to + (y + 1) * width, [upper..upper + 2 * width, lower..lower + 2 * width])
-    })
-}
+/// Rows of pixels that a thread takes at once.
+const ROWS: usize = 32;
 
 /// Copies the first sample of each pixel.
-fn first_samples(from: &Plane, to: &mut Plane) {
-    for (row, [upper, _]) in rows_of_both(to, from) {
-        for_values!(&*from.texels, to.texels_mut(), |a, b| {
-            b[row.clone()]
-                .iter_mut()
-                .zip(a[upper.clone()].chunks_exact(2))
-                .for_each(|(to, from)| *to = from[0]);
-        });
-    }
+fn first_samples(from: &Plane, to: &mut Plane, uses: &Uses) {
+    let (width, stride) = (to.stride(), 2 * from.stride());
+    let (one, four) = (to.range(), from.range());
+    for_values!(&*from.texels, to.texels_mut(), |a, b, of| {
+        if uses.0[of] == Use::Changed {
+            let rows = b[one.clone()].par_chunks_mut(width).zip(a[four.clone()].par_chunks(stride));
+            rows.with_min_len(ROWS).for_each(|(to, from)| {
+                to.iter_mut().zip(from.as_chunks::<2>().0).for_each(|(to, from)| *to = from[0]);
+            });
+        }
+    });
 }
 
 /// Marks the pixels that are not what the first sample of `four` is.
-fn mark_changes(one: &Plane, four: &Plane, changed: &mut [bool]) {
-    for ((row, [upper, _]), changed) in rows_of_both(one, four).zip(changed.chunks_exact_mut(one.stride())) {
-        for_values!(&*one.texels, &*four.texels, |a, b| {
-            let pixels = a[row.clone()].iter().zip(b[upper.clone()].chunks_exact(2));
-            changed.iter_mut().zip(pixels).for_each(|(changed, (new, old))| *changed |= *new != old[0]);
-        });
-    }
-}
-
-/// Copies the pixels that have changed to all their samples.
-fn spread(from: &Plane, to: &mut Plane, changed: &[bool]) {
-    for ((row, samples), changed) in rows_of_both(from, to).zip(changed.chunks_exact(from.stride())) {
-        if !changed.contains(&true) {
-            continue;
-        }
-        for samples in samples {
-            for_values!(&*from.texels, to.texels_mut(), |a, b| {
-                let pixels = b[samples.clone()].chunks_exact_mut(2).zip(&a[row.clone()]);
-                pixels
-                    .zip(changed)
-                    .filter(|(_, changed)| **changed)
-                    .for_each(|((to, from), _)| to.fill(*from));
+fn mark_changes(one: &Plane, four: &Plane, uses: &Uses, changed: &mut [bool]) {
+    let (width, stride) = (one.stride(), 2 * four.stride());
+    for_values!(&*one.texels, &*four.texels, |a, b, of| {
+        if uses.0[of] == Use::Changed {
+            let rows = a[one.range()].par_chunks(width).zip(b[four.range()].par_chunks(stride));
+            let rows = rows.zip(changed.par_chunks_mut(width));
+            rows.with_min_len(ROWS).for_each(|((new, old), changed)| {
+                let pixels = new.iter().zip(old.as_chunks::<2>().0);
+                changed.iter_mut().zip(pixels).for_each(|(changed, (new, old))| *changed |= *new != old[0]);
             });
         }
-    }
+    });
+}
+
+/// Copies pixels to all their samples: those that have changed, or all where all are set.
+fn spread(from: &Plane, to: &mut Plane, uses: &Uses, changed: &[bool]) {
+    let (width, stride) = (from.stride(), to.stride());
+    let (one, four) = (from.range(), to.range());
+    for_values!(&*from.texels, to.texels_mut(), |a, b, of| {
+        let rows = b[four.clone()].par_chunks_mut(2 * stride).zip(a[one.clone()].par_chunks(width));
+        match uses.0[of] {
+            Use::Kept => {}
+            Use::Cleared => rows.with_min_len(ROWS).for_each(|(to, from)| {
+                let (upper, lower) = to.split_at_mut(stride);
+                upper.as_chunks_mut::<2>().0.iter_mut().zip(from).for_each(|(to, from)| *to = [*from; 2]);
+                lower.copy_from_slice(upper);
+            }),
+            Use::Changed => {
+                let rows = rows.zip(changed.par_chunks(width)).filter(|(_, changed)| changed.contains(&true));
+                rows.for_each(|((to, from), changed)| {
+                    for to in to.chunks_exact_mut(stride) {
+                        let pixels = to.as_chunks_mut::<2>().0.iter_mut().zip(from).zip(changed);
+                        pixels.filter(|(_, changed)| **changed).for_each(|((to, from), _)| *to = [*from; 2]);
+                    }
+                });
+            }
+        }
+    });
 }
 
 fn texels_of(taken: &Option<Taken>) -> Option<Texels> {

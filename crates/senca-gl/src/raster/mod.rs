@@ -3,7 +3,7 @@
 mod shading;
 
 use crate::fragment::Program;
-use crate::framebuffer::WaitingClear;
+use crate::framebuffer::{Use, Uses, WaitingClear};
 use crate::raster_state::{Batch, Kind, RasterState};
 use crate::state::Cap;
 use crate::{Context, Enum, gl};
@@ -29,11 +29,28 @@ impl Context {
         let rows = if clear.is_some() { 0..u32::MAX } else { rows_of_all(batches) };
         let mut planes = self.framebuffers.take_planes_for(rows);
         let (rasterizer, multisample) = (&mut self.rasterizer, first.state.has(Cap::Multisample));
-        let passed = planes
-            .draw(multisample, |mut target, side| draw(rasterizer, &mut target, batches, side, clear).passed);
+        let uses = uses(batches, clear.as_ref());
+        let passed = planes.draw(multisample, &uses, |mut target, side| {
+            draw(rasterizer, &mut target, batches, side, clear).passed
+        });
         self.framebuffers.put_back(planes);
         passed
     }
+}
+
+/// What batches and a clear before them do to colours, depths and stencil values.
+fn uses(batches: &[Batch], clear: Option<&Clear>) -> Uses {
+    let of = |cleared: bool, used: &dyn Fn(&RasterState) -> bool| match cleared {
+        true => Use::Cleared,
+        false if batches.iter().any(|batch| used(&batch.state)) => Use::Changed,
+        false => Use::Kept,
+    };
+    Uses([
+        of(clear.is_some_and(|c| c.color.is_some()), &|s| s.color.mask != [false; 4]),
+        // Stencil tests look at depths, too, but change them only by their own test.
+        of(clear.is_some_and(|c| c.depth.is_some()), &|s| s.has(Cap::DepthTest)),
+        of(clear.is_some_and(|c| c.stencil.is_some()), &|s| s.has(Cap::StencilTest)),
+    ])
 }
 
 /// Vertices up to which it is worth while to find out where they are.
@@ -47,7 +64,6 @@ fn clears_along(clear: &WaitingClear, batch: &Batch) -> bool {
         && !all_culled
         && !s.has(Cap::PolygonSmooth)
         && (!s.has(Cap::ScissorTest) || covers(rect(s.scissor), clear.size))
-        && (clear.samples == 0 || s.has(Cap::Multisample))
 }
 
 /// Whether a rectangle covers all pixels of a target.
@@ -149,7 +165,7 @@ impl<'a> Ready<'a> {
         let sized = with_sizes(batch, usize::from(batch.layout.stride));
         let work = match simple_shading(s, batch.kind, target, simple_texture(batch)) {
             Some(simple) => {
-                state.blend = simple.blend;
+                (state.blend, state.stencil) = (simple.blend, simple.stencil);
                 Work::Simple(simple)
             }
             None => {

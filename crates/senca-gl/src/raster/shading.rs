@@ -3,12 +3,12 @@
 
 use crate::fragment::{MAX_LOD_BIAS, View};
 use crate::raster_state::{Batch, Kind, RasterState};
-use crate::state::{Cap, ColorBuffer, TexTarget};
+use crate::state::{Cap, ColorBuffer, StencilBuffer, TexTarget};
 use crate::texture::{BaseFormat, TexImage, TexParams, Texels};
 use crate::{Enum, gl};
 use senca_raster::{
-    Blend, ColorSource, Factor, Filter, Mip, Sampler, Shading, SharedTexels, Target, Texture, TextureLevel,
-    TextureUnit, Wrap,
+    Blend, ColorSource, Factor, Filter, Mip, Sampler, Shading, SharedTexels, StencilOp, StencilTest, Target,
+    Texture, TextureLevel, TextureUnit, Wrap,
 };
 use std::sync::Arc;
 
@@ -111,6 +111,7 @@ pub(super) struct SimpleShading {
     color: Option<ColorSource>,
     texture: Option<SimpleTexture>,
     pub(super) blend: Option<Blend>,
+    pub(super) stencil: Option<StencilTest>,
 }
 
 impl SimpleShading {
@@ -133,12 +134,13 @@ pub(super) fn simple_shading(
 ) -> Option<SimpleShading> {
     let stencil = s.has(Cap::StencilTest) && target.has_stencil();
     let stipple = kind == Kind::Triangles && s.has(Cap::PolygonStipple);
-    if stencil || stipple {
+    if stencil && kind != Kind::Triangles || stipple {
         return None;
     }
+    let stencil = stencil.then(|| stencil_of(&s.stencil));
     let alpha_test = s.has(Cap::AlphaTest) && s.color.alpha_func != gl::ALWAYS;
     if s.color.mask == [false; 4] && !alpha_test {
-        return Some(SimpleShading { color: None, texture: None, blend: None });
+        return Some(SimpleShading { color: None, texture: None, blend: None, stencil });
     }
     let plain = (s.units.is_empty() || texture.is_some())
         && !s.color_sum
@@ -155,7 +157,32 @@ pub(super) fn simple_shading(
         Some(texture) if texture.replaces => ColorSource::Constant([1.0; 4]),
         _ => ColorSource::Rgba { first: 0 },
     };
-    Some(SimpleShading { color: Some(color), texture, blend })
+    Some(SimpleShading { color: Some(color), texture, blend, stencil })
+}
+
+fn stencil_of(s: &StencilBuffer) -> StencilTest {
+    StencilTest {
+        compare: super::compare(s.func),
+        reference: s.reference.clamp(0, 255) as u8,
+        value_mask: s.value_mask as u8,
+        write_mask: s.write_mask as u8,
+        fail: stencil_op(s.fail),
+        depth_fail: stencil_op(s.depth_fail),
+        pass: stencil_op(s.depth_pass),
+    }
+}
+
+fn stencil_op(op: Enum) -> StencilOp {
+    match op {
+        gl::ZERO => StencilOp::Zero,
+        gl::REPLACE => StencilOp::Replace,
+        gl::INCR => StencilOp::Increment,
+        gl::DECR => StencilOp::Decrement,
+        gl::INCR_WRAP => StencilOp::IncrementWrap,
+        gl::DECR_WRAP => StencilOp::DecrementWrap,
+        gl::INVERT => StencilOp::Invert,
+        _ => StencilOp::Keep,
+    }
 }
 
 /// The blending, if it is a sum with the same factors for colour and alpha.
