@@ -51,6 +51,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) color: ColorPath,
     /// The texture the colour is multiplied by, and the slot of u.
     pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
+    /// Texels of its levels, if they have 8 bits.
+    pub(crate) texels: Vec<&'a [[u8; 4]]>,
     /// Which varyings are interpolated.
     pub(crate) slots: Vec<usize>,
 }
@@ -176,10 +178,9 @@ pub(crate) struct TileDraw<'a, 'b, const FAST: bool> {
 }
 
 /// What is the same for all vectors of one row of pixel pairs: the part of each plane that depends on
-/// y, and the edges.
+/// y.
 #[derive(Clone, Copy)]
 struct Row<S: Simd> {
-    edges: [i32x16<S>; 3],
     fy: f32x16<S>,
     depth: f32x16<S>,
 }
@@ -320,7 +321,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         for (k, steps) in lanes.iter().enumerate() {
             let (dx, dy) = (b.edge_dx[k][lane], b.edge_dy[k][lane]);
             // Between blocks the steps are eight times as large.
-            let at = (*steps << 3) + edge_at(simd, b, k, lane, 8 * top);
+            let at = (*steps << 3) + edge_at(simd, b, k, lane, [0, 8 * top]);
             most |= at + i32x16::splat(simd, 7 * dx.max(0).wrapping_add(dy.max(0)));
             least |= at + i32x16::splat(simd, 7 * dx.min(0).wrapping_add(dy.min(0)));
         }
@@ -431,15 +432,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let b = &*self.batch;
         let y = 8 * by + 2 * pair;
         let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, (b.offset[1][lane] + y) as f32);
-        let row = Row {
-            edges: [
-                lanes[0] + edge_at(simd, b, 0, lane, y),
-                lanes[1] + edge_at(simd, b, 1, lane, y),
-                lanes[2] + edge_at(simd, b, 2, lane, y),
-            ],
-            fy,
-            depth: row_of(simd, &b.depth, lane, fy),
-        };
+        let row = Row { fy, depth: row_of(simd, &b.depth, lane, fy) };
         let mut left = active;
         while left != 0 {
             let bx = left.trailing_zeros() as i32;
@@ -448,9 +441,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let mut inside = mask32x16::splat(simd, true);
             if full >> bx & 1 == 0 {
                 let b = &*self.batch;
-                let e0 = row.edges[0] + i32x16::splat(simd, b.edge_dx[0][lane].wrapping_mul(8 * bx));
-                let e1 = row.edges[1] + i32x16::splat(simd, b.edge_dx[1][lane].wrapping_mul(8 * bx));
-                let e2 = row.edges[2] + i32x16::splat(simd, b.edge_dx[2][lane].wrapping_mul(8 * bx));
+                let e0 = lanes[0] + edge_at(simd, b, 0, lane, [8 * bx, y]);
+                let e1 = lanes[1] + edge_at(simd, b, 1, lane, [8 * bx, y]);
+                let e2 = lanes[2] + edge_at(simd, b, 2, lane, [8 * bx, y]);
                 inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
                 if self.partial {
                     inside &= self.within_bounds(simd, bx * 8, y);
@@ -477,6 +470,11 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     fn vector<S: Simd>(&mut self, simd: S, place: Place, row: &Row<S>, inside: mask32x16<S>, bx: i32) {
         let Place { lane, block, pair } = place;
         let b = &*self.batch;
+        let covered = inside.to_bitmask() as u16;
+        if covered == 0 {
+            return;
+        }
+        self.counts.tested += u64::from(covered.count_ones());
         let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (b.offset[0][lane] + 8 * bx) as f32);
         let mut pass = inside;
         let mut z = row.depth;
@@ -489,11 +487,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let stored = f32x16::load_array_ref(simd, &self.buffer.depth[block][pair]);
             pass &= compare(simd, self.pass.state.depth_test, z, stored);
         }
-        self.counts.tested += u64::from(inside.to_bitmask().count_ones());
         let mut bits = pass.to_bitmask() as u16;
         if let Some(test) = &self.pass.stencil {
-            let [passed, changed] =
-                stencil(simd, test, &mut self.buffer.stencil[block][pair], inside.to_bitmask() as u16, bits);
+            let [passed, changed] = stencil(simd, test, &mut self.buffer.stencil[block][pair], covered, bits);
             if changed != 0 {
                 self.buffer.written |= 1 << (block & 63);
             }
@@ -758,10 +754,11 @@ fn edge_lanes<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize) -> i32x16<S> {
         + i32x16::load_array(simd, LANE_Y) * i32x16::splat(simd, b.edge_dy[k][lane])
 }
 
-/// The value of edge `k` at column 0, row `y` of the tile.
+/// The value of edge `k` at column `x`, row `y` of the tile.
 #[inline(always)]
-fn edge_at<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, y: i32) -> i32x16<S> {
-    i32x16::splat(simd, b.edge[k][lane].wrapping_add(b.edge_dy[k][lane].wrapping_mul(y)))
+fn edge_at<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, [x, y]: [i32; 2]) -> i32x16<S> {
+    let along = b.edge_dx[k][lane].wrapping_mul(x);
+    i32x16::splat(simd, b.edge[k][lane].wrapping_add(along).wrapping_add(b.edge_dy[k][lane].wrapping_mul(y)))
 }
 
 /// A varying at 16 pixels; see [`crate::assemble::TriangleVaryings::at`].

@@ -181,12 +181,12 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 job.address(simd, unit, lookup);
                 staged += 1;
                 if staged == STAGED {
-                    self.finish(simd, unit.texture, staged);
+                    self.finish(simd, staged);
                     staged = 0;
                 }
             }
         }
-        self.finish(simd, unit.texture, staged);
+        self.finish(simd, staged);
     }
 
     /// Vectors that read the nearest texel of the only level.
@@ -281,12 +281,16 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// Fetches the texels of the first `count` jobs, then mixes them.
     #[inline(always)]
-    fn finish<S: Simd>(&mut self, simd: S, texture: &Texture, count: usize) {
+    fn finish<S: Simd>(&mut self, simd: S, count: usize) {
         let count = count.min(STAGED);
+        let levels = &self.pass.texels;
         for job in &mut self.queue.staged[..count] {
-            let [fine, coarse] = levels_from(texture, job.level);
-            job.taps[0].fetch(fine);
-            if job.two_levels {
+            if let Some(fine) = levels.get(job.level).or(levels.last()) {
+                job.taps[0].fetch(fine);
+            }
+            if job.two_levels
+                && let Some(coarse) = levels.get(job.level + 1).or(levels.last())
+            {
                 job.taps[1].fetch(coarse);
             }
         }
@@ -384,8 +388,7 @@ impl TapLanes {
     }
 
     #[inline(always)]
-    fn fetch(&mut self, level: &TextureLevel) {
-        let Some(texels) = level.texels.rgba8() else { return };
+    fn fetch(&mut self, texels: &[[u8; 4]]) {
         pair_texels(texels, &self.left, &mut self.texels);
         if self.apart != 0 {
             self.fetch_apart(texels);

@@ -282,6 +282,7 @@ fn pass<'a>(
         }
         _ => None,
     };
+    let texels = texture.map(|(unit, _)| unit.texture.levels.iter().filter_map(|l| l.texels.rgba8()));
     Pass {
         map,
         state,
@@ -315,6 +316,7 @@ fn pass<'a>(
             && target.ids.is_none(),
         color,
         texture,
+        texels: texels.into_iter().flatten().collect(),
         slots,
     }
 }
@@ -483,29 +485,46 @@ impl Part<'_> {
     }
 
     /// Fills the batch; whether there was anything to fill it with.
+    ///
+    /// Corners of a tile's triangles are all over the memory: first the places of all, then their varyings, each
+    /// in a loop so short that the processor waits for several at once.
     #[inline(always)]
     fn fill<'r>(
         &self,
         batch: &mut Batch,
         references: &mut impl Iterator<Item = (&'r Run, &'r Reference)>,
     ) -> bool {
+        let mut whole = [[u32::MAX; 3]; LANES];
         while batch.len < LANES
             && let Some((run, reference)) = references.next()
         {
             match reference.piece() {
-                None => self.fetch(batch, reference),
+                None => whole[self.fetch(batch, reference) % LANES] = reference.corners,
                 Some(k) => self.fetch_piece(batch, run, k),
+            }
+        }
+        if !self.pass.slots.is_empty() {
+            for (lane, corners) in whole.iter().enumerate().take(batch.len) {
+                if corners[0] != u32::MAX {
+                    self.fetch_varyings(batch, lane, *corners);
+                }
             }
         }
         batch.len > 0
     }
 
-    /// Puts a triangle into the batch.
+    /// Puts a triangle into the batch but for its varyings; returns its lane.
     #[inline(always)]
-    fn fetch(&self, batch: &mut Batch, reference: &Reference) {
-        let (p, [a, b, c]) = (self.input.primitives, reference.corners);
+    fn fetch(&self, batch: &mut Batch, reference: &Reference) -> usize {
+        let [a, b, c] = reference.corners;
         let v = [self.input.projected(a), self.input.projected(b), self.input.projected(c)];
-        let lane = batch.push(&v, p.ids.of(reference.triangle()));
+        batch.push(&v, self.input.primitives.ids.of(reference.triangle()))
+    }
+
+    /// Puts the varyings of a triangle into a lane.
+    #[inline(always)]
+    fn fetch_varyings(&self, batch: &mut Batch, lane: usize, [a, b, c]: [u32; 3]) {
+        let p = self.input.primitives;
         let from = match self.pass.state.interpolation {
             Interpolation::FlatFirst => [a; 3],
             Interpolation::FlatLast => [c; 3],
@@ -513,13 +532,14 @@ impl Part<'_> {
         };
         let values = from.map(|i| varyings_of(p, i));
         if let [r, _, _] = *self.pass.slots
-            && let Some(values) = three(values, r)
+            && let Some(values) = some_of::<3>(values, r)
         {
-            // The usual case, a colour without alpha, with its lengths known.
-            for (slot, to) in batch.values.iter_mut().enumerate().take(3) {
-                (to[0][lane], to[1][lane], to[2][lane]) = (values[0][slot], values[1][slot], values[2][slot]);
-            }
-            return;
+            return put(batch, lane, values);
+        }
+        if let [r, _, _, _] = *self.pass.slots
+            && let Some(values) = some_of::<4>(values, r)
+        {
+            return put(batch, lane, values);
         }
         for (slot, &varying) in self.pass.slots.iter().enumerate() {
             let to = &mut batch.values[slot % MAX_VARYINGS];
@@ -543,11 +563,18 @@ impl Part<'_> {
     }
 }
 
-/// Three varyings from `first` on, of each corner.
+/// `N` varyings from `first` on, of each corner: a colour, the usual case, with its lengths known.
 #[inline(always)]
-fn three(values: [&[f32]; 3], first: usize) -> Option<[&[f32; 3]; 3]> {
+fn some_of<const N: usize>(values: [&[f32]; 3], first: usize) -> Option<[&[f32; N]; 3]> {
     let [a, b, c] = values;
     Some([a.get(first..)?.first_chunk()?, b.get(first..)?.first_chunk()?, c.get(first..)?.first_chunk()?])
+}
+
+#[inline(always)]
+fn put<const N: usize>(batch: &mut Batch, lane: usize, values: [&[f32; N]; 3]) {
+    for (slot, to) in batch.values.iter_mut().enumerate().take(N) {
+        (to[0][lane], to[1][lane], to[2][lane]) = (values[0][slot], values[1][slot], values[2][slot]);
+    }
 }
 
 /// Memory of one thread.

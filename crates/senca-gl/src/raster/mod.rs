@@ -12,7 +12,7 @@ use senca_raster::{
     Clear, Compare, Counters, Cull, DepthBias, Draw, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading,
     SimdLevel, State, StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
-use shading::{SimpleShading, simple_shading, simple_texture};
+use shading::{SimpleShading, constant_color, simple_shading, simple_texture};
 
 /// A step of depth that is never lost: two of the smallest of 24 bits.
 const DEPTH_UNIT: f32 = 1.0 / (1 << 23) as f32;
@@ -163,7 +163,7 @@ impl<'a> Ready<'a> {
         };
         let lifted = lifted(batch, state.depth_bias.constant);
         let sized = with_sizes(batch, usize::from(batch.layout.stride));
-        let work = match simple_shading(s, batch.kind, target, simple_texture(batch)) {
+        let work = match simple_shading(s, batch.kind, target, simple_texture(batch), constant_color(batch)) {
             Some(simple) => {
                 (state.blend, state.stencil) = (simple.blend, simple.stencil);
                 Work::Simple(simple)

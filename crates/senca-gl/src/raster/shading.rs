@@ -125,12 +125,26 @@ impl SimpleShading {
     }
 }
 
+/// Vertices up to which it is worth while to look whether they have one colour.
+const FEW_VERTICES: usize = 4096;
+
+/// The colour that all vertices have.
+pub(super) fn constant_color(batch: &Batch) -> Option<[f32; 4]> {
+    let stride = usize::from(batch.layout.stride);
+    if batch.kind != Kind::Triangles || batch.positions.len() > FEW_VERTICES {
+        return None;
+    }
+    let color = *batch.varyings.first_chunk::<4>()?;
+    batch.varyings.chunks_exact(stride).all(|v| v.starts_with(&color)).then_some(color)
+}
+
 /// The rasterizer's own shading and blending, where the state asks for no more than it can.
 pub(super) fn simple_shading(
     s: &RasterState,
     kind: Kind,
     target: &Target<'_>,
     texture: Option<SimpleTexture>,
+    constant: Option<[f32; 4]>,
 ) -> Option<SimpleShading> {
     let stencil = s.has(Cap::StencilTest) && target.has_stencil();
     let stipple = kind == Kind::Triangles && s.has(Cap::PolygonStipple);
@@ -155,7 +169,7 @@ pub(super) fn simple_shading(
     let blend = blend.filter(|b| *b != Blend { source: Factor::One, destination: Factor::Zero });
     let color = match &texture {
         Some(texture) if texture.replaces => ColorSource::Constant([1.0; 4]),
-        _ => ColorSource::Rgba { first: 0 },
+        _ => constant.map_or(ColorSource::Rgba { first: 0 }, ColorSource::Constant),
     };
     Some(SimpleShading { color: Some(color), texture, blend, stencil })
 }
@@ -271,7 +285,7 @@ mod tests {
                     let mut none = [[0u8; 4]; 1];
                     let target =
                         Target::new(1, 1).and_then(|t| t.with_color(ColorPlane::Rgba8(&mut none))).unwrap();
-                    let simple = simple_shading(&batch.state, Kind::Triangles, &target, Some(texture));
+                    let simple = simple_shading(&batch.state, Kind::Triangles, &target, Some(texture), None);
                     let program = Program::new(
                         &batch.state,
                         Kind::Triangles,
