@@ -604,10 +604,12 @@ fn share<J: Send, R: Send>(threads: usize, jobs: Vec<J>, work: impl Fn(J) -> R +
             lock(&done).push(result);
         }
     };
-    rayon::scope(|scope| {
-        for _ in 0..tasks {
+    // This thread works, too, instead of waiting for another one to wake up.
+    rayon::in_place_scope(|scope| {
+        for _ in 1..tasks {
             scope.spawn(|_| run());
         }
+        run();
     });
     done.into_inner().unwrap_or_default()
 }
