@@ -18,8 +18,10 @@ pub(crate) const MAX_POINT_SIZE: f32 = 2048.0;
 pub(crate) const MAX_LINE_WIDTH: f32 = 2048.0;
 /// Vertices after which what waits is drawn in any case.
 const FULL: usize = 1 << 18;
-/// Batches after which they are.
+/// Batches after which it is.
 const MANY: usize = 64;
+/// Spare batches that may hold memory for more than their share of vertices.
+const LARGE_SPARES: usize = 8;
 
 /// What the primitives of a batch are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -260,10 +262,13 @@ impl Context {
             let passed = self.draw_batches(group);
             self.queries.add(passed);
         }
-        for mut batch in batches.drain(..) {
+        // The first one will be the first to be used again, by what is probably the same in the next frame.
+        for mut batch in batches.drain(..).rev() {
             batch.clear();
             batch.state.units.clear();
-            self.spare_batches.push(batch);
+            if self.spare_batches.len() < LARGE_SPARES || batch.positions.capacity() <= FULL / MANY {
+                self.spare_batches.push(batch);
+            }
         }
         self.waiting = batches;
     }

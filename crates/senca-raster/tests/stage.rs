@@ -208,7 +208,7 @@ fn draws_together_are_draws_one_after_another() {
             let state = State {
                 depth_test: compares[(n + 2 * k) % 5],
                 depth_write: (n + k) % 4 != 1,
-                stencil: ((n ^ k) % 3 != 0).then(|| stencil_test(n + 5 * k)),
+                stencil: (!(n ^ k).is_multiple_of(3)).then(|| stencil_test(n + 5 * k)),
                 blend: ((n + k) % 7 == 2).then_some(Blend::ADD),
                 clear: (k == 0 && n % 2 == 0 || n == 9 && k == 2).then_some(cleared),
                 scissor: (n + k == 11).then_some(Rect { x: 3, y: 5, width: 60, height: 50 }),
