@@ -39,10 +39,10 @@ pub use measure::{
 pub use project::{DepthKept, FARTHEST_PIXEL, Lens, Projection, view_angle};
 pub use reference::{ExactPlane, clip_exact, for_each_pixel_within, project_corners};
 pub use rotate::{Coefficient, Number, Rotation, SinCos, rotate_in_plane, scale, translate};
-pub use scene::{Body, Face, FaceTexture, World};
+pub use scene::{Body, Face, FaceTexture, LightTable, World};
 pub use street::street;
 pub use texture::{
     CORNER_BITS, Mapping, TEXEL_BITS, Texture, TextureArithmetic, TextureMapping, TexturePlane,
-    TexturedPolygon, fill_textured, for_each_textured_pixel,
+    TexturedPolygon, fill_lit, fill_textured, for_each_textured_pixel,
 };
 pub use volume::{VolumeTest, test_volume};

@@ -60,8 +60,9 @@ pub fn run(program: &mut dyn Program, save: impl FnMut(&Canvas)) -> Result<Canva
 ///
 /// # Errors
 /// When there is no display, or it gives no window.
-pub fn go_on(session: Session<'_>, save: impl FnMut(&Canvas)) -> Result<Canvas, DesktopError> {
+pub fn go_on(mut session: Session<'_>, save: impl FnMut(&Canvas)) -> Result<Canvas, DesktopError> {
     let events = EventLoop::new().map_err(|error| DesktopError::NoDisplay(plain(&error)))?;
+    session.enter_window();
     let mut desktop = Desktop {
         session,
         save,

@@ -93,6 +93,10 @@ pub trait Program {
         false
     }
 
+    /// The program is shown in a window from now on, where drawing should not take long: while it is
+    /// [`Program::animated`] it may draw what it has so far. Without a window, pictures are complete.
+    fn enter_window(&mut self) {}
+
     /// Something happens.
     fn event(&mut self, event: Event) -> Flow;
 

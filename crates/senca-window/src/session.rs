@@ -58,6 +58,12 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// The program is shown in a window from now on.
+    #[cfg_attr(not(feature = "desktop"), expect(dead_code, reason = "only desktops have windows"))]
+    pub(crate) fn enter_window(&mut self) {
+        self.program.enter_window();
+    }
+
     fn tell(&mut self, event: Event) {
         if self.ended {
             return;

@@ -157,3 +157,15 @@ fn polygons_are_counted_and_saved() {
     let saved = std::fs::read_to_string(folder.path().join("s.txt")).expect("polygons");
     assert!(saved.starts_with("40 30 100 255\n200 60 100 85\n90 190 100 28\n\n120 20 90 141\n"), "{saved}");
 }
+
+#[test]
+fn the_flight_has_the_errors_of_the_document() {
+    let output = classic(folder().path(), "game --script game-flight.keys --measure", "");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let measured = String::from_utf8(output.stdout).expect("a text");
+    let document = std::fs::read_to_string(repository().join("docs/classic-game.md")).expect("a document");
+    assert!(
+        measured.lines().count() > 30 && document.contains(&measured),
+        "not as in the document:\n{measured}"
+    );
+}

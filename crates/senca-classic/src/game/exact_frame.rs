@@ -64,9 +64,12 @@ pub fn draw_frame_exactly(world: &World, viewer: &Viewer, stages: &Stages, map: 
     }
 }
 
-/// Corners of a face that are drawn: column, row, depth, and the intensity.
+/// Corners of a face that are drawn: column, row, depth, and the intensity; or the light, if it is lit.
 fn seen_corners(face: &Face, points: &[[f64; 3]], stages: &Stages, lens: Lens) -> Vec<[f64; 4]> {
-    let intensity = |k: usize| f64::from(*face.intensities.get(k).unwrap_or(&face.color));
+    let intensity = |k: usize| match face.texture {
+        Some(texture) if stages.surface == Surface::Lit => f64::from(texture.light[k % 4]),
+        _ => f64::from(*face.intensities.get(k).unwrap_or(&face.color)),
+    };
     let corner = |(k, &i): (usize, &usize)| [points[i][0], points[i][1], points[i][2], intensity(k)];
     let corners: Vec<_> = face.corners.iter().enumerate().map(corner).collect();
     project_corners(&clip_exact(&corners, f64::from(stages.plane())), lens)
@@ -83,11 +86,15 @@ fn draw_face(world: &World, face: &Face, points: &[[f64; 3]], stages: &Stages, m
                 draw_line_by_address(map, [nearest(a), nearest(&b)], face.color, stages.search);
             }
         }
-        (Surface::Textured, Some(texture), Some(plane)) => {
+        (Surface::Textured | Surface::Lit, Some(texture), Some(plane)) => {
             let seen = Seen { lens, face, points, texture, plane };
-            for_each_pixel_within(&corners, map.size(), |x, y, _| map.dot(x, y, seen.color(x, y)));
+            for_each_pixel_within(&corners, map.size(), |x, y, v| {
+                let color = seen.color(x, y);
+                let is_lit = stages.surface == Surface::Lit;
+                map.dot(x, y, if is_lit { world.lights.color(color, v[3] as i64) } else { color });
+            });
         }
-        (Surface::Shaded | Surface::Textured, ..) if !face.intensities.is_empty() => {
+        (Surface::Shaded | Surface::Textured | Surface::Lit, ..) if !face.intensities.is_empty() => {
             for_each_pixel_within(&corners, map.size(), |x, y, v| map.dot(x, y, v[3] as u8));
         }
         _ => for_each_pixel_within(&corners, map.size(), |x, y, _| map.dot(x, y, face.color)),

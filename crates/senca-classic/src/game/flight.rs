@@ -222,7 +222,8 @@ impl Flight {
     }
 }
 
-const SURFACES: [Surface; 4] = [Surface::Textured, Surface::Shaded, Surface::Flat, Surface::Wire];
+const SURFACES: [Surface; 5] =
+    [Surface::Textured, Surface::Lit, Surface::Shaded, Surface::Flat, Surface::Wire];
 const MAPPINGS: [Mapping; 7] = [
     Mapping::Subdivided(16),
     Mapping::Subdivided(8),
@@ -282,14 +283,15 @@ impl Program for Flight {
             Surface::Wire => "wire".to_owned(),
             Surface::Flat => "flat".to_owned(),
             Surface::Shaded => "shaded".to_owned(),
-            Surface::Textured => {
+            Surface::Textured | Surface::Lit => {
+                let lit = if surface == Surface::Lit { "lit, " } else { "" };
                 let narrow = match texture_arithmetic {
                     TextureArithmetic { is_32_bit: true, fraction_bits } => {
                         format!(" in 32 bits, {fraction_bits} of them fraction")
                     }
                     _ => String::new(),
                 };
-                mapping_name(mapping) + &narrow
+                format!("{lit}{}{narrow}", mapping_name(mapping))
             }
         };
         let search = match search {
@@ -405,7 +407,7 @@ mod tests {
     #[test]
     fn keys_change_the_stages_and_come_round() {
         for (key, times) in [
-            ('t', 4),
+            ('t', 5),
             ('m', 7),
             ('f', 4),
             ('b', 3),

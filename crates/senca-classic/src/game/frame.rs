@@ -14,10 +14,10 @@ use super::fixed::Fixed;
 use super::line::draw_line_by_address;
 use super::project::{Lens, Projection};
 use super::rotate::{Rotation, translate};
-use super::scene::{Body, Face, World};
+use super::scene::{Body, Face, LightTable, World};
 use super::texture::{
     CORNER_BITS, Mapping, Texture, TextureArithmetic, TextureMapping, TexturePlane, TexturedPolygon,
-    fill_textured,
+    fill_lit, fill_textured,
 };
 use super::volume::{VolumeTest, test_volume};
 
@@ -139,6 +139,15 @@ pub enum Surface {
     /// Textures, where a face has one; otherwise shaded.
     #[default]
     Textured,
+    /// Textures under light that goes from corner to corner, where a face has one; otherwise shaded.
+    Lit,
+}
+
+impl Surface {
+    /// Whether faces that have a texture show it.
+    pub(crate) fn has_textures(self) -> bool {
+        matches!(self, Self::Textured | Self::Lit)
+    }
 }
 
 /// What each stage does.
@@ -214,8 +223,8 @@ pub struct Counters {
 /// A face in front of the clipping plane, in the integers of the library.
 #[derive(Clone, Debug)]
 pub(crate) struct SeenFace {
-    /// x, y, z, and the place in the texture, or the intensity and 0.
-    pub(crate) corners: Vec<[i32; 5]>,
+    /// x, y, z, the place in the texture, or the intensity and 0, and the light.
+    pub(crate) corners: Vec<[i32; 6]>,
     /// The vectors of the texture.
     pub(crate) edges: [[i32; 3]; 2],
 }
@@ -223,7 +232,7 @@ pub(crate) struct SeenFace {
 impl SeenFace {
     /// The texture's plane, at the farthest corner: there a unit of rounding weighs least.
     pub(crate) fn plane(&self, log_scale: u32) -> Option<TexturePlane> {
-        let &[x, y, z, u, v] = self.corners.iter().max_by_key(|c| c[2])?;
+        let &[x, y, z, u, v, _] = self.corners.iter().max_by_key(|c| c[2])?;
         Some(TexturePlane {
             origin: [x, y, z],
             anchor: [u, v],
@@ -235,8 +244,14 @@ impl SeenFace {
 
     /// The corners on the screen with what they carry.
     pub(crate) fn on_screen(&self, lens: Lens) -> Vec<[i32; 4]> {
-        let project = |&[x, y, z, a, b]: &[i32; 5]| lens.project([x, y, z]).map(|[x, y]| [x, y, a, b]);
+        let project = |&[x, y, z, a, b, _]: &[i32; 6]| lens.project([x, y, z]).map(|[x, y]| [x, y, a, b]);
         self.corners.iter().filter_map(project).collect()
+    }
+
+    /// The light at the corners that are on the screen.
+    fn lights(&self, lens: Lens) -> Vec<i32> {
+        let is_seen = |&&[x, y, z, ..]: &&[i32; 6]| lens.project([x, y, z]).is_some();
+        self.corners.iter().filter(is_seen).map(|corner| corner[5]).collect()
     }
 }
 
@@ -265,15 +280,15 @@ pub(crate) fn seen_face(
         test => test,
     };
     let extra = |k: usize| match (face.texture, face.intensities.get(k)) {
-        (Some(texture), _) if stages.surface == Surface::Textured => {
-            texture.corner(k).map(|t| t << CORNER_BITS)
-        }
+        (Some(texture), _) if stages.surface.has_textures() => texture.corner(k).map(|t| t << CORNER_BITS),
         (_, Some(&intensity)) => [i32::from(intensity), 0],
         (_, None) => [i32::from(face.color), 0],
     };
     let whole = places.iter().enumerate().map(|(k, &[x, y, z])| {
         let [a, b] = extra(k);
-        [x, y, z, a, b]
+        let light =
+            face.texture.and_then(|texture| texture.light.get(k).copied()).unwrap_or(LightTable::FULL);
+        [x, y, z, a, b, i32::from(light)]
     });
     let whole: Vec<_> = whole.collect();
     let corners = match test {
@@ -333,10 +348,10 @@ fn draw_face(world: &World, face: &Face, seen: &SeenFace, stages: &Stages, map: 
                 draw_line_by_address(map, line, face.color, stages.search);
             }
         }
-        (Surface::Textured, Some((log_scale, texture))) => {
-            draw_textured(seen, &corners, (log_scale, texture), stages, map);
+        (Surface::Textured | Surface::Lit, Some((log_scale, texture))) => {
+            draw_textured(seen, &corners, (log_scale, texture), &world.lights, stages, map);
         }
-        (Surface::Shaded | Surface::Textured, _) if !face.intensities.is_empty() => {
+        (Surface::Shaded | Surface::Textured | Surface::Lit, _) if !face.intensities.is_empty() => {
             let corners: Vec<_> = corners.iter().map(|c| [c[0], c[1], c[2]]).collect();
             fill_shaded(map, &corners, stages.search);
         }
@@ -348,17 +363,24 @@ fn draw_textured(
     seen: &SeenFace,
     corners: &[[i32; 4]],
     (log_scale, texture): (u32, &Texture),
+    lights: &LightTable,
     stages: &Stages,
     map: &mut ColorMap,
 ) {
     let Some(plane) = seen.plane(log_scale) else { return };
-    let plane = TextureMapping::new(&plane, stages.lens(map.size()), stages.texture_arithmetic);
+    let lens = stages.lens(map.size());
+    let plane = TextureMapping::new(&plane, lens, stages.texture_arithmetic);
     // Without perspective linear is exact.
     let mapping = match stages.projection {
         Projection::Perspective => stages.mapping,
         Projection::Parallel { .. } => Mapping::Affine,
     };
-    fill_textured(map, &TexturedPolygon { corners, plane }, texture, mapping, stages.search);
+    let polygon = TexturedPolygon { corners, plane };
+    if stages.surface == Surface::Lit {
+        fill_lit(map, &polygon, &seen.lights(lens), (texture, lights), mapping, stages.search);
+    } else {
+        fill_textured(map, &polygon, texture, mapping, stages.search);
+    }
 }
 
 /// Draws a line in space: cut at the plane, projected, cut on the screen.

@@ -25,7 +25,7 @@ fn share_that_differs(a: &ColorMap, b: &ColorMap) -> f64 {
 fn the_integers_draw_what_the_reference_draws() {
     let world = street();
     let still = Viewer { heading: Angle(0), ..start() };
-    for surface in [Surface::Flat, Surface::Shaded, Surface::Wire, Surface::Textured] {
+    for surface in [Surface::Flat, Surface::Shaded, Surface::Wire, Surface::Textured, Surface::Lit] {
         let stages = Stages {
             surface,
             arithmetic: Arithmetic::Float,
@@ -37,7 +37,7 @@ fn the_integers_draw_what_the_reference_draws() {
         draw_frame_exactly(&world, &still, &stages, &mut exact);
         let differs = share_that_differs(&map, &exact);
         // Borders are a pixel wider, and textures as fine as pixels come out otherwise.
-        let limit = if surface == Surface::Textured { 0.4 } else { 0.12 };
+        let limit = if surface.has_textures() { 0.4 } else { 0.12 };
         assert!(differs < limit, "{surface:?}: {differs}");
         assert_eq!(counters.faces, counters.turned_away + counters.outside + counters.drawn);
     }

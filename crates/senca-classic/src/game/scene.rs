@@ -13,6 +13,30 @@ pub struct World {
     pub palette: [u32; 256],
     /// The colour behind everything.
     pub sky: u8,
+    /// What each colour becomes in each light, for textures that are lit.
+    pub lights: LightTable,
+}
+
+/// What each colour becomes in light, from darkness, 0, to full light, [`LightTable::FULL`]. The palette has to hold
+/// several intensities of each colour for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LightTable(Vec<[u8; 256]>);
+
+impl LightTable {
+    /// The full light, in which colours are as they are.
+    pub const FULL: u8 = 31;
+
+    /// From the colour that a colour becomes in a light.
+    #[must_use]
+    pub fn from_fn(color: impl Fn(u8, u8) -> u8) -> Self {
+        Self((0..=Self::FULL).map(|light| std::array::from_fn(|c| color(c as u8, light))).collect())
+    }
+
+    /// What a colour becomes in a light; below 0 is darkness, more than full light is full light.
+    #[must_use]
+    pub fn color(&self, color: u8, light: i64) -> u8 {
+        self.0[light.clamp(0, i64::from(Self::FULL)) as usize][usize::from(color)]
+    }
 }
 
 /// A convex body, or ground.
@@ -52,6 +76,8 @@ pub struct FaceTexture {
     pub index: usize,
     /// Logarithm of the texels along both edges.
     pub log_scale: u32,
+    /// Light at the corners, 0 to [`LightTable::FULL`].
+    pub light: [u8; 4],
 }
 
 impl FaceTexture {

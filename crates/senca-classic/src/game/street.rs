@@ -2,7 +2,7 @@
 //!
 //! A unit is some ten centimetres. The road runs along Z from 0 to 2560; the houses stand at its sides.
 
-use super::scene::{Body, Face, FaceTexture, World};
+use super::scene::{Body, Face, FaceTexture, LightTable, World};
 use super::texture::Texture;
 
 /// Shades of each colour in the palette.
@@ -160,11 +160,32 @@ pub fn street() -> World {
             let is_office = (block + side) % 3 == 0;
             bodies.push(if is_office { office(side, z, storeys / 2 + 1) } else { house(side, z, storeys) });
             bodies.extend(tree([side * 140, z + 5 * PANEL / 2]));
-            bodies.push(lamp_post([side * 100, z - PANEL / 2]));
+            bodies.push(lamp_post([side * LAMP[1], z - PANEL / 2]));
         }
         bodies.push(wire(z - PANEL / 2, z + 5 * PANEL / 2));
     }
-    World { bodies, textures: textures(), palette: palette(), sky: Hue::Sky.shade(29) }
+    World {
+        bodies,
+        textures: textures(),
+        palette: palette(),
+        sky: Hue::Sky.shade(29),
+        lights: LightTable::from_fn(|color, light| darker(color, i32::from(light) * 1000 / 31)),
+    }
+}
+
+/// Height of the lamps, and their distance from the middle of the road.
+const LAMP: [i32; 2] = [110, 100];
+
+/// Depth of the first lamps, and from one to the next.
+const LAMPS: [i32; 2] = [2 * PANEL - PANEL / 2, 3 * PANEL];
+
+/// The light of a dusk with lamps at a place, 0 to [`LightTable::FULL`]: that of the sky, and the nearest lamp's, which
+/// is half as much 100 units from it as beside it.
+fn light_at([x, y, z]: [i32; 3]) -> u8 {
+    let block = ((z - LAMPS[0] + LAMPS[1] / 2).div_euclid(LAMPS[1])).clamp(0, 9);
+    let way = [x.abs() - LAMP[1], y - LAMP[0], z - LAMPS[0] - block * LAMPS[1]];
+    let square: i32 = way.iter().map(|d| d * d).sum();
+    (8 + 30 * 10_000 / (10_000 + square)).clamp(0, i32::from(LightTable::FULL)) as u8
 }
 
 /// A flat face with a texture over it, so many times along each edge as the logarithm says.
@@ -177,6 +198,7 @@ fn panel(
 ) -> Face {
     let first = points.len();
     points.extend(corners);
+    let light = corners.map(light_at);
     // Walls along the street stand in the shade.
     let index = index + usize::from(normal[0] != 0);
     let color = textured_color(index);
@@ -185,7 +207,7 @@ fn panel(
         normal,
         color,
         intensities: (0..4).map(|k| if k < 2 { color } else { darker(color, 700) }).collect(),
-        texture: Some(FaceTexture { index, log_scale: LOG_SIDE + log_repeats }),
+        texture: Some(FaceTexture { index, log_scale: LOG_SIDE + log_repeats, light }),
     }
 }
 
@@ -315,7 +337,7 @@ fn post([x, z]: [i32; 2], half: i32, [low, high]: [i32; 2], hue: Hue) -> Body {
 }
 
 fn lamp_post(at: [i32; 2]) -> Body {
-    post(at, 2, [0, 110], Hue::Grey)
+    post(at, 2, [0, LAMP[0]], Hue::Grey)
 }
 
 /// A trunk, and a ball of leaves in triangles.
@@ -399,6 +421,18 @@ mod tests {
                 assert!(!face.faces(point, body.center), "the middle of a body sees no front");
             }
         }
+    }
+
+    #[test]
+    fn lamps_light_what_is_near() {
+        let [height, aside] = LAMP;
+        let under = light_at([aside, 0, LAMPS[0] + LAMPS[1]]);
+        assert_eq!(light_at([-aside, height, LAMPS[0] + LAMPS[1]]), LightTable::FULL);
+        assert!(under < LightTable::FULL && under > light_at([aside, 0, LAMPS[0] + LAMPS[1] * 3 / 2]));
+        assert_eq!(light_at([700, 0, -300]), 8, "far away the sky alone");
+        let world = street();
+        assert_eq!(world.lights.color(Hue::Leaf.shade(20), 31), Hue::Leaf.shade(20));
+        assert_eq!(world.lights.color(Hue::Leaf.shade(20), 0), Hue::Leaf.shade(0));
     }
 
     #[test]

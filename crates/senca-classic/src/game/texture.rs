@@ -6,11 +6,12 @@
 //!
 //! Source: Savchenko 1995, "Textured polygons".
 
-use super::borders::Borders;
+use super::borders::{BORDER_BITS, Borders};
 use super::clip::Search;
 use super::color_map::ColorMap;
 use super::fixed::saturate;
 use super::project::Lens;
+use super::scene::LightTable;
 
 /// Fraction bits of places in a texture that corners and anchors carry: 1/256 of a texel. (In the text, whole texels.)
 pub const CORNER_BITS: u32 = 8;
@@ -255,6 +256,35 @@ pub fn fill_textured(
     let size = map.size();
     for_each_textured_pixel(polygon, size, mapping, search, |x, y, place| {
         map.dot(x, y, texture.color(place))
+    });
+}
+
+/// Fills a polygon with a texture under light, which is interpolated from corner to corner as intensities are: the
+/// text's extension to both at once. `lights` has the light of each corner of the polygon; missing ones are darkness.
+pub fn fill_lit(
+    map: &mut ColorMap,
+    polygon: &TexturedPolygon<'_>,
+    lights: &[i32],
+    (texture, table): (&Texture, &LightTable),
+    mapping: Mapping,
+    search: Search,
+) {
+    let size = map.size();
+    let light_of = |k: usize| lights.get(k).copied().unwrap_or(0);
+    let corners: Vec<_> =
+        polygon.corners.iter().enumerate().map(|(k, c)| [c[0], c[1], light_of(k)]).collect();
+    let borders = Borders::of_polygon(&corners, size, 1, search);
+    // Light at the start of each row, and by how much it grows from pixel to pixel.
+    let mut rows = vec![(0, 0, 0); size[1]];
+    for span in borders.spans() {
+        let pixels = i64::from(span.end) - i64::from(span.start) + 1;
+        let increment = (span.rest_end[0] - span.rest_start[0]) / pixels.max(1);
+        rows[span.y as usize] = (span.start, span.rest_start[0], increment);
+    }
+    for_each_textured_pixel(polygon, size, mapping, search, |x, y, place| {
+        let (start, first, increment) = rows[y as usize];
+        let light = first + increment * i64::from(x - start);
+        map.dot(x, y, table.color(texture.color(place), light >> BORDER_BITS));
     });
 }
 

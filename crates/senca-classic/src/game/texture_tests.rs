@@ -202,3 +202,40 @@ proptest! {
         prop_assert!((point[1] - f64::from(y) / 256.0 * point[2]).abs() < step);
     }
 }
+
+#[test]
+fn light_is_interpolated_as_intensities_are() {
+    // One colour all over: what is left is the light.
+    let texture = Texture::from_fn(2, |_, _| 200);
+    let table = LightTable::from_fn(|color, light| color.saturating_sub(31 - light));
+    let plane = TextureMapping::new(&deep_wall(), Lens::new(320, 200), TextureArithmetic::default());
+    let polygon = TexturedPolygon { corners: &DEEP_CORNERS, plane };
+    let lights = [31, 4, 0, 17];
+    let shaded: Vec<_> = DEEP_CORNERS.iter().zip(lights).map(|(c, light)| [c[0], c[1], light]).collect();
+    for mapping in [Mapping::Affine, Mapping::Subdivided(16), Mapping::Subdivided(1)] {
+        let (mut lit, mut plain) = (ColorMap::new(320, 200), ColorMap::new(320, 200));
+        fill_lit(&mut lit, &polygon, &lights, (&texture, &table), mapping, Search::Precise);
+        crate::game::fill_shaded(&mut plain, &shaded, Search::Precise);
+        for (i, (&lit, &light)) in lit.pixels().iter().zip(plain.pixels()).enumerate() {
+            let is_inside = (80..=240).contains(&(i % 320)) && (80..=120).contains(&(i / 320));
+            assert_eq!(lit, if is_inside { 169 + light } else { 0 }, "{i}");
+        }
+    }
+}
+
+#[test]
+fn in_full_light_textures_are_as_they_are() {
+    let texture = Texture::from_fn(6, |x, y| (x * 4 + y) as u8);
+    let table = LightTable::from_fn(|color, light| if light == LightTable::FULL { color } else { 0 });
+    let plane = TextureMapping::new(&deep_wall(), Lens::new(320, 200), TextureArithmetic::default());
+    let polygon = TexturedPolygon { corners: &DEEP_CORNERS, plane };
+    let (mut lit, mut plain) = (ColorMap::new(320, 200), ColorMap::new(320, 200));
+    let mapping = Mapping::Subdivided(16);
+    fill_lit(&mut lit, &polygon, &[31; 4], (&texture, &table), mapping, Search::Precise);
+    fill_textured(&mut plain, &polygon, &texture, mapping, Search::Precise);
+    assert_eq!(lit, plain);
+    let mut dark = ColorMap::new(320, 200);
+    fill_lit(&mut dark, &polygon, &[], (&texture, &table), mapping, Search::Precise);
+    assert!(dark.pixels().iter().all(|&p| p == 0), "no light is darkness");
+    assert_eq!((table.color(9, -5), table.color(9, 1 << 40)), (0, 9));
+}

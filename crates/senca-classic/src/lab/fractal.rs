@@ -17,8 +17,8 @@ mod wide;
 mod zoom;
 
 pub use colors::{Coloring, colored};
-pub use deep::{DeepView, MAX_BOUND, brute_counts, deep_counts};
-pub use fast::counts;
+pub use deep::{DeepView, MAX_BOUND, brute_counts, deep_counts, deep_counts_one_by_one};
+pub use fast::{counts, counts_into};
 pub use fearless_simd::Level;
 pub use fixed::{Fixed, FixedError};
 pub use wide::Wide;
@@ -199,8 +199,8 @@ pub fn trace(parameters: &Parameters, mut z: Complex, c: Complex) -> Vec<f64> {
     moduli
 }
 
-/// k of every pixel, row by row from the top.
-#[derive(Clone, Debug, PartialEq)]
+/// k of every pixel, row by row from the top. The default is a picture without pixels.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counts {
     /// Width and height.
     pub size: [usize; 2],

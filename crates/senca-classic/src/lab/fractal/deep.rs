@@ -12,16 +12,22 @@
 //!
 //! Differences too small for the processor's numbers have an exponent of their own until they have
 //! grown.
+//!
+//! [`deep_counts`] lets sixteen pixels go together, [`deep_counts_one_by_one`] is the same for one after
+//! the other, and [`brute_counts`] knows nothing of all this.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 use senca_math::{Cancelled, Control};
 
 use super::fixed::Fixed;
 use super::wide::{Wide, WideComplex};
 use super::{Complex, Counts, modulus, stays};
+
+mod together;
 
 /// Greatest bound of |z|: squares then fit before the point of [`Fixed`].
 pub const MAX_BOUND: f64 = 1e9;
@@ -34,6 +40,9 @@ const GROWN: i64 = -440;
 
 /// Power of two below which numbers of the reference are also kept with an exponent of their own.
 const TINY: i64 = -900;
+
+/// Square above which numbers of the reference are much larger than small differences.
+const LARGE: f64 = 1e-180;
 
 /// A view of any depth.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +76,12 @@ impl DeepView {
         [(x as f64 - 0.5 * w) / w, (y as f64 - 0.5 * h) / w].map(|share| self.width.times_f64(share))
     }
 
+    /// The same, with an exponent of its own.
+    fn difference(&self, x: usize, y: usize) -> WideComplex {
+        let [re, im] = self.offset(x, y);
+        WideComplex::new(re, im)
+    }
+
     fn limbs(&self) -> usize {
         let parts = self.center.iter().chain(self.julia.iter().flatten());
         parts.map(Fixed::fraction).max().unwrap_or(1).max(Self::limbs_for(self.width, self.size[0]))
@@ -83,63 +98,24 @@ fn next_fixed([x, y]: &[Fixed; 2], [cx, cy]: &[Fixed; 2]) -> [Fixed; 2] {
     [x.multiply(x).subtract(&y.multiply(y)).add(cx), x.multiply(y).doubled().add(cy)]
 }
 
-/// An orbit with many digits, rounded to the processor's numbers.
-struct Reference {
-    /// Z from Z_0 on, to the first that has left or the last that can be needed.
+/// Orbits with many digits, rounded to the processor's numbers, that pixels differ from.
+struct References {
+    /// Z of the orbit that differences begin at, then Z of the orbit of 0, if that is another one: each from
+    /// its beginning to the first that has left or the last that can be needed.
     z: Vec<Complex>,
     /// Those that are too small for the processor's numbers.
     tiny: HashMap<usize, WideComplex>,
+    /// Where the orbit of 0 begins.
+    critical: usize,
+    /// Whether pixels begin with different z, and not with different c.
+    is_julia: bool,
 }
 
-impl Reference {
-    fn new(
-        view: &DeepView,
-        start: [Fixed; 2],
-        c: &[Fixed; 2],
-        control: &Control<'_>,
-    ) -> Result<Self, Cancelled> {
-        let mut reference = Self { z: Vec::new(), tiny: HashMap::new() };
-        let mut z = start;
-        for n in 0..=u64::from(view.iterations) + 1 {
-            if n % 64 == 0 {
-                control.check()?;
-            }
-            let wide = WideComplex::new(z[0].to_wide(), z[1].to_wide());
-            if wide.exponent() < TINY {
-                reference.tiny.insert(reference.z.len(), wide);
-            }
-            let rounded = wide.to_f64();
-            reference.z.push(rounded);
-            if n > 0 && !stays(modulus(rounded), view.bound) {
-                break;
-            }
-            z = next_fixed(&z, c);
-        }
-        Ok(reference)
-    }
-
-    fn last(&self) -> usize {
-        self.z.len() - 1
-    }
-
-    fn wide(&self, n: usize) -> WideComplex {
-        self.tiny.get(&n).copied().unwrap_or_else(|| WideComplex::from_f64(self.z[n]))
-    }
-}
-
-/// Where a pixel's orbit is: at index `n` of a reference.
-struct Place<'a> {
-    reference: &'a Reference,
+/// Where a pixel's orbit is: beside `n` of the references, after `k` iterations within the bound.
+#[derive(Clone, Copy, Default)]
+struct Place {
     n: usize,
     k: u32,
-}
-
-/// The references of a picture.
-struct References {
-    /// The orbit that differences begin at, when it is not that of 0.
-    first: Option<Reference>,
-    /// The orbit of 0.
-    critical: Reference,
 }
 
 /// How the iteration of a pixel goes on.
@@ -152,28 +128,70 @@ enum Pause {
 impl References {
     fn new(view: &DeepView, control: &Control<'_>) -> Result<Self, Cancelled> {
         let center = view.with_limbs(&view.center);
-        let zero = || [Fixed::zero(view.limbs()), Fixed::zero(view.limbs())];
-        let Some(c) = &view.julia else {
-            return Ok(Self { first: None, critical: Reference::new(view, zero(), &center, control)? });
-        };
-        let c = view.with_limbs(c);
-        let first = Some(Reference::new(view, center, &c, control)?);
-        Ok(Self { first, critical: Reference::new(view, zero(), &c, control)? })
+        let zero = [Fixed::zero(view.limbs()), Fixed::zero(view.limbs())];
+        let is_julia = view.julia.is_some();
+        let mut references = Self { z: Vec::new(), tiny: HashMap::new(), critical: 0, is_julia };
+        match &view.julia {
+            None => references.add(view, zero, &center, control)?,
+            Some(c) => {
+                let c = view.with_limbs(c);
+                references.add(view, center, &c, control)?;
+                references.critical = references.z.len();
+                references.add(view, zero, &c, control)?;
+            }
+        }
+        Ok(references)
+    }
+
+    fn add(
+        &mut self,
+        view: &DeepView,
+        mut z: [Fixed; 2],
+        c: &[Fixed; 2],
+        control: &Control<'_>,
+    ) -> Result<(), Cancelled> {
+        for n in 0..=u64::from(view.iterations) + 1 {
+            if n % 64 == 0 {
+                control.check()?;
+            }
+            let wide = WideComplex::new(z[0].to_wide(), z[1].to_wide());
+            if wide.exponent() < TINY {
+                self.tiny.insert(self.z.len(), wide);
+            }
+            let rounded = wide.to_f64();
+            self.z.push(rounded);
+            if n > 0 && !stays(modulus(rounded), view.bound) {
+                break;
+            }
+            z = next_fixed(&z, c);
+        }
+        Ok(())
+    }
+
+    /// The last of the orbit that `n` belongs to.
+    fn last(&self, n: usize) -> usize {
+        if n < self.critical { self.critical - 1 } else { self.z.len() - 1 }
+    }
+
+    fn wide(&self, n: usize) -> WideComplex {
+        self.tiny.get(&n).copied().unwrap_or_else(|| WideComplex::from_f64(self.z[n]))
+    }
+
+    /// Differences of z and of c that a pixel begins with.
+    fn begin(&self, offset: WideComplex) -> (WideComplex, WideComplex) {
+        if self.is_julia { (offset, WideComplex::ZERO) } else { (WideComplex::ZERO, offset) }
     }
 
     /// k of a pixel, and z after the last iteration.
     fn leave(&self, view: &DeepView, offset: WideComplex) -> (u32, Complex) {
-        let mut place = Place { reference: self.first.as_ref().unwrap_or(&self.critical), n: 0, k: 0 };
-        let (mut d, dc) = match self.first {
-            Some(_) => (offset, WideComplex::ZERO),
-            None => (WideComplex::ZERO, offset),
-        };
+        let mut place = Place::default();
+        let (mut d, dc) = self.begin(offset);
         loop {
             let small = d.exponent().max(dc.exponent()) < GROWN;
             let (pause, next) = if small {
                 self.iterate_small(view, &mut place, d, dc)
             } else {
-                self.iterate(view, &mut place, d.to_f64(), dc.to_f64(), dc.exponent())
+                self.iterate(view, &mut place, d.to_f64(), dc)
             };
             match pause {
                 Pause::Left(z) => return (place.k, z),
@@ -183,76 +201,132 @@ impl References {
     }
 
     /// Iterates with the processor's numbers.
-    fn iterate<'a>(
-        &'a self,
+    fn iterate(
+        &self,
         view: &DeepView,
-        place: &mut Place<'a>,
+        place: &mut Place,
         mut d: Complex,
-        dc: Complex,
-        dc_exponent: i64,
+        dc: WideComplex,
     ) -> (Pause, WideComplex) {
-        let limit = 2.0_f64.powi(2 * SMALL as i32);
+        let small = small_square(dc);
+        let dc = dc.to_f64();
         loop {
-            let [zx, zy] = place.reference.z[place.n];
+            let [zx, zy] = self.z[place.n];
             let (sx, sy) = (2.0 * zx + d[0], 2.0 * zy + d[1]);
             d = [sx * d[0] - sy * d[1] + dc[0], sx * d[1] + sy * d[0] + dc[1]];
             place.n += 1;
-            let [zx, zy] = place.reference.z[place.n];
+            let [zx, zy] = self.z[place.n];
             let z = [zx + d[0], zy + d[1]];
-            let (z_square, d_square) = (z[0] * z[0] + z[1] * z[1], d[0] * d[0] + d[1] * d[1]);
-            if !(stays(z_square.sqrt(), view.bound) && place.k < view.iterations) {
+            if !(stays(modulus(z), view.bound) && place.k < view.iterations) {
                 return (Pause::Left(z), WideComplex::ZERO);
             }
             place.k += 1;
-            if z_square < d_square || place.n == place.reference.last() {
-                (d, place.n, place.reference) = (z, 0, &self.critical);
+            if square(z) < square(d) || place.n == self.last(place.n) {
+                (d, place.n) = (z, self.critical);
             }
-            // Where differences of c are that small, they must not be lost beside a small d.
-            if dc_exponent < SMALL && d[0] * d[0] + d[1] * d[1] < limit {
+            if square(d) < small {
                 return (Pause::Changed, WideComplex::from_f64(d));
             }
         }
     }
 
     /// Iterates with exponents, until the difference has grown.
-    fn iterate_small<'a>(
-        &'a self,
+    fn iterate_small(
+        &self,
         view: &DeepView,
-        place: &mut Place<'a>,
+        place: &mut Place,
         mut d: WideComplex,
         dc: WideComplex,
     ) -> (Pause, WideComplex) {
         while d.exponent() < GROWN {
-            d = place.reference.wide(place.n).doubled().add(d).times(d).add(dc);
+            d = self.wide(place.n).doubled().add(d).times(d).add(dc);
             place.n += 1;
-            let z = place.reference.wide(place.n).add(d);
+            let z = self.wide(place.n).add(d);
             let rounded = z.to_f64();
             if !(stays(modulus(rounded), view.bound) && place.k < view.iterations) {
                 return (Pause::Left(rounded), d);
             }
             place.k += 1;
-            if z.is_below(d) || place.n == place.reference.last() {
-                (d, place.n, place.reference) = (z, 0, &self.critical);
+            if z.is_below(d) || place.n == self.last(place.n) {
+                (d, place.n) = (z, self.critical);
             }
+            d = self.iterate_beside_large(view, place, d, dc);
         }
         (Pause::Changed, d)
     }
+
+    /// Goes on while Z is so large that z is Z and d^2 is nothing: then the difference is 2 Z d + (difference
+    /// of c), and both can be kept as multiples of the same power of two, in the processor's numbers.
+    fn iterate_beside_large(
+        &self,
+        view: &DeepView,
+        place: &mut Place,
+        d: WideComplex,
+        dc: WideComplex,
+    ) -> WideComplex {
+        let exponent = d.exponent().max(dc.exponent());
+        // Neither the end of the reference nor m is reached.
+        let steps = (self.last(place.n) - 1).saturating_sub(place.n);
+        let steps = steps.min((view.iterations - place.k) as usize);
+        if d.exponent() == i64::MIN || steps == 0 {
+            return d;
+        }
+        let [[mut x, mut y], c] = [d, dc].map(|v| v.times_power(-exponent).to_f64());
+        let grown = 2.0_f64.powi((2 * (GROWN - exponent)).clamp(0, 1000) as i32);
+        let precise = 2.0_f64.powi(-900)..grown;
+        let mut done = 0;
+        for pair in self.z[place.n..=place.n + steps].windows(2) {
+            let ([zx, zy], next) = (pair[0], pair[1]);
+            if square(pair[0]).min(square(next)) < LARGE {
+                break;
+            }
+            (x, y) = (2.0 * (zx * x - zy * y) + c[0], 2.0 * (zx * y + zy * x) + c[1]);
+            done += 1;
+            if !precise.contains(&square([x, y])) {
+                break;
+            }
+        }
+        place.n += done;
+        place.k += done as u32;
+        WideComplex::from_f64([x, y]).times_power(exponent)
+    }
 }
 
-/// k of all pixels of a view of any depth, by perturbation.
+/// |z|^2.
+fn square([x, y]: Complex) -> f64 {
+    x * x + y * y
+}
+
+/// Square of the difference below which an exponent of its own is needed: where differences of c are that
+/// small, they must not be lost beside a small d. 0 where they are not.
+fn small_square(dc: WideComplex) -> f64 {
+    if dc.exponent() < SMALL { 2.0_f64.powi(2 * SMALL as i32) } else { 0.0 }
+}
+
+/// k and |z| of all pixels of a view of any depth, by perturbation.
 ///
 /// # Errors
 /// The caller asked to stop.
-pub fn deep_counts(view: &DeepView, control: &Control<'_>) -> Result<Counts, Cancelled> {
+pub fn deep_counts(view: &DeepView, level: Level, control: &Control<'_>) -> Result<Counts, Cancelled> {
     let references = References::new(view, control)?;
-    let leave = |x: usize, y: usize| {
-        let [re, im] = view.offset(x, y);
-        references.leave(view, WideComplex::new(re, im))
-    };
-    all_pixels(view, control, leave)
+    all_pixels(
+        view,
+        control,
+        |y, row| dispatch!(level, simd => together::leave_row(simd, &references, view, y, row, control)),
+    )
 }
 
-/// The same by iterating every pixel with many digits: slow, and what [`deep_counts`] is tested against.
+/// The same for one pixel after the other, without vectors: to the last bit.
+///
+/// # Errors
+/// The caller asked to stop.
+pub fn deep_counts_one_by_one(view: &DeepView, control: &Control<'_>) -> Result<Counts, Cancelled> {
+    let references = References::new(view, control)?;
+    each_pixel(view, control, |x, y| references.leave(view, view.difference(x, y)))
+}
+
+/// k and |z| of all pixels by iterating each with many digits: slow, and what [`deep_counts`] is tested
+/// against.
 ///
 /// # Errors
 /// The caller asked to stop.
@@ -276,33 +350,48 @@ pub fn brute_counts(view: &DeepView, control: &Control<'_>) -> Result<Counts, Ca
             k += 1;
         }
     };
-    all_pixels(view, control, leave)
+    each_pixel(view, control, leave)
 }
 
-fn all_pixels(
+fn each_pixel(
     view: &DeepView,
     control: &Control<'_>,
     leave: impl Fn(usize, usize) -> (u32, Complex) + Sync,
 ) -> Result<Counts, Cancelled> {
+    all_pixels(view, control, |y, row| {
+        row.iter_mut().enumerate().try_for_each(|(x, pixel)| {
+            *pixel = leave(x, y);
+            control.check()
+        })
+    })
+}
+
+/// A pixel's k, and z after its last iteration.
+type Found = (u32, Complex);
+
+fn all_pixels(
+    view: &DeepView,
+    control: &Control<'_>,
+    leave_row: impl Fn(usize, &mut [Found]) -> Result<(), Cancelled> + Sync,
+) -> Result<Counts, Cancelled> {
     let [width, height] = view.size;
     let done = AtomicUsize::new(0);
-    let row = |y: usize| {
-        let row: Result<Vec<(u32, Complex)>, Cancelled> =
-            (0..width).map(|x| control.check().map(|()| leave(x, y))).collect();
+    let mut pixels: Vec<Found> = vec![(0, [0.0; 2]); width * height];
+    pixels.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
+        control.check()?;
+        leave_row(y, row)?;
         control.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
-        row
-    };
-    let rows: Vec<Vec<(u32, Complex)>> = (0..height).into_par_iter().map(row).collect::<Result<_, _>>()?;
-    let pixels = || rows.iter().flatten();
+        Ok(())
+    })?;
     let is_last = |k: u32| k == view.iterations;
     let left = |z: Complex| !stays(modulus(z), view.bound);
     Ok(Counts {
         size: view.size,
         iterations: view.iterations,
         bound: view.bound,
-        left_at_last: pixels().filter(|&&(k, z)| is_last(k) && left(z)).count(),
-        k: pixels().map(|p| p.0).collect(),
-        moduli: pixels().map(|&(k, z)| if is_last(k) { 0.0 } else { modulus(z) }).collect(),
+        left_at_last: pixels.iter().filter(|&&(k, z)| is_last(k) && left(z)).count(),
+        k: pixels.iter().map(|p| p.0).collect(),
+        moduli: pixels.iter().map(|&(k, z)| if is_last(k) { 0.0 } else { modulus(z) }).collect(),
     })
 }
 

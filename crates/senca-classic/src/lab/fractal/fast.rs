@@ -20,6 +20,9 @@ const TOGETHER: usize = 16;
 /// Iterations between two looks at whether all have left.
 const UNLOOKED: u32 = 4;
 
+/// Rounds between two looks at whether the caller wants to stop.
+const UNSTOPPED: u32 = 1 << 16;
+
 /// k of all pixels, and |z| of those that leave if `moduli` is asked for; the same as by
 /// [`literal_counts`](super::literal_counts), to the last bit.
 ///
@@ -31,42 +34,65 @@ pub fn counts(
     level: Level,
     control: &Control<'_>,
 ) -> Result<Counts, Cancelled> {
+    let mut counts = Counts::default();
+    counts_into(parameters, moduli, level, control, &mut counts)?;
+    Ok(counts)
+}
+
+/// The same into counts that have been there before, whose memory is used again: where m is small, new
+/// memory takes longer than the iterations.
+///
+/// # Errors
+/// The caller asked to stop. What is in `counts` is not to be relied on then.
+pub fn counts_into(
+    parameters: &Parameters,
+    moduli: bool,
+    level: Level,
+    control: &Control<'_>,
+    counts: &mut Counts,
+) -> Result<(), Cancelled> {
     let [width, height] = parameters.size;
+    (counts.size, counts.iterations) = (parameters.size, parameters.iterations);
+    counts.bound = parameters.bound;
+    resize(&mut counts.k, width * height);
+    resize(&mut counts.moduli, if moduli { width * height } else { 0 });
     let columns: Vec<f64> = (0..width).map(|x| parameters.point(x, 0)[0]).collect();
     let limit = square_limit(parameters.bound);
-    let mut k = vec![0; width * height];
-    let mut all_moduli = vec![0.0; if moduli { width * height } else { 0 }];
     let (done, left_at_last) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let row = |y: usize, k: &mut [u32]| {
         control.check()?;
         let v = parameters.point(0, y)[1];
-        let left = dispatch!(level, simd => counts_of_row(simd, parameters, limit, &columns, v, k));
+        let left = dispatch!(level, simd => counts_of_row(simd, parameters, limit, &columns, v, k, control));
+        control.check()?;
         left_at_last.fetch_add(left, Ordering::Relaxed);
         control.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
         Ok(())
     };
     if moduli {
-        let rows = k.par_chunks_mut(width).zip(all_moduli.par_chunks_mut(width)).enumerate();
+        let rows = counts.k.par_chunks_mut(width).zip(counts.moduli.par_chunks_mut(width)).enumerate();
         rows.try_for_each(|(y, (k, moduli))| {
             row(y, k)?;
             for (x, (modulus, &k)) in moduli.iter_mut().zip(&*k).enumerate() {
-                if k < parameters.iterations {
-                    *modulus = modulus_after(parameters, x, y, k);
-                }
+                let left = k < parameters.iterations;
+                *modulus = if left { modulus_after(parameters, x, y, k) } else { 0.0 };
             }
             Ok(())
         })?;
     } else {
-        k.par_chunks_mut(width).enumerate().try_for_each(|(y, k)| row(y, k))?;
+        counts.k.par_chunks_mut(width).enumerate().try_for_each(|(y, k)| row(y, k))?;
     }
-    Ok(Counts {
-        size: parameters.size,
-        iterations: parameters.iterations,
-        bound: parameters.bound,
-        left_at_last: left_at_last.into_inner(),
-        k,
-        moduli: all_moduli,
-    })
+    counts.left_at_last = left_at_last.into_inner();
+    Ok(())
+}
+
+/// Makes it so long; what it holds is written over later. New memory comes from the system with zeros in
+/// it, and is not touched here.
+fn resize<T: Clone + Default>(numbers: &mut Vec<T>, length: usize) {
+    if numbers.capacity() < length {
+        *numbers = vec![T::default(); length];
+    } else {
+        numbers.resize(length, T::default());
+    }
 }
 
 /// |z| after iteration `k`.
@@ -80,7 +106,7 @@ fn modulus_after(parameters: &Parameters, x: usize, y: usize, k: u32) -> f64 {
 
 /// The least s whose square root is not below `bound`: then s < limit says the same as sqrt(s) < bound,
 /// with all rounding.
-fn square_limit(bound: f64) -> f64 {
+pub(super) fn square_limit(bound: f64) -> f64 {
     let mut limit = bound * bound;
     while limit.sqrt() >= bound && limit > 0.0 {
         limit = limit.next_down();
@@ -100,23 +126,33 @@ fn counts_of_row<S: Simd>(
     columns: &[f64],
     v: f64,
     k: &mut [u32],
+    control: &Control<'_>,
 ) -> usize {
-    let mut starts = [0.0; TOGETHER];
     let mut found = [0.0; TOGETHER];
     let mut left_at_last = 0;
-    for (columns, k) in columns.chunks(TOGETHER).zip(k.chunks_mut(TOGETHER)) {
-        // A part at the end of the row goes with copies of its last pixel.
-        let last = columns[columns.len() - 1];
-        for (i, start) in starts.iter_mut().enumerate() {
-            *start = columns.get(i).copied().unwrap_or(last);
-        }
-        counts_together(simd, parameters, limit, &starts, v, &mut found);
-        for (k, found) in k.iter_mut().zip(&found) {
-            *k = *found as u32;
-            left_at_last += usize::from(found.fract() != 0.0);
-        }
+    let (whole, rest) = columns.as_chunks::<TOGETHER>();
+    let (whole_k, rest_k) = k.as_chunks_mut::<TOGETHER>();
+    for (columns, k) in whole.iter().zip(whole_k) {
+        left_at_last +=
+            counts_together(simd, parameters, limit, columns, v, &mut found, control).count_ones();
+        *k = found.map(whole_number);
     }
-    left_at_last
+    if let Some(&last) = rest.last() {
+        // The part at the end of the row goes with copies of its last pixel.
+        let starts = std::array::from_fn(|i| rest.get(i).copied().unwrap_or(last));
+        let left = counts_together(simd, parameters, limit, &starts, v, &mut found, control);
+        left_at_last += (left & ((1 << rest.len()) - 1)).count_ones();
+        rest_k.iter_mut().zip(found).for_each(|(k, found)| *k = whole_number(found));
+    }
+    left_at_last as usize
+}
+
+/// A whole number below 2^32 as an integer: with 2^52 added its digits are the last ones of the mantissa.
+/// That makes vectors of integers out of vectors of numbers, without a look at each.
+#[inline(always)]
+fn whole_number(k: f64) -> u32 {
+    const SHIFT: f64 = (1_u64 << 52) as f64;
+    (k + SHIFT).to_bits() as u32
 }
 
 /// Eight orbits.
@@ -171,7 +207,8 @@ impl<S: Simd> Orbits<S> {
     }
 }
 
-/// k of some pixels, and 1/2 more for those that left with the very last iteration.
+/// k of some pixels. Returned are, as bits, those that left with the very last iteration. None of
+/// it is right when the caller has asked to stop.
 #[inline(always)]
 fn counts_together<S: Simd>(
     simd: S,
@@ -180,7 +217,8 @@ fn counts_together<S: Simd>(
     u: &[f64; TOGETHER],
     v: f64,
     found: &mut [f64; TOGETHER],
-) {
+    control: &Control<'_>,
+) -> u32 {
     let splat = |value: f64| f64x8::splat(simd, value);
     let (limit, one, zero) = (splat(limit), splat(1.0), splat(0.0));
     let iterations = splat(f64::from(parameters.iterations));
@@ -201,6 +239,9 @@ fn counts_together<S: Simd>(
         if round % 4 == 0 {
             a.take_out_returned(iterations);
             b.take_out_returned(iterations);
+            if round % UNSTOPPED == 0 && control.is_cancelled() {
+                break;
+            }
             // Marks twice as far apart each time find cycles of any length.
             if round >= next_mark {
                 (a.old_x, a.old_y, b.old_x, b.old_y) = (a.x, a.y, b.x, b.y);
@@ -212,14 +253,18 @@ fn counts_together<S: Simd>(
         a.step(limit, one, zero);
         b.step(limit, one, zero);
     }
+    a.k.store_slice(&mut found[..8]);
+    b.k.store_slice(&mut found[8..]);
+    if !(a.inside | b.inside).any_true() {
+        return 0;
+    }
     // The loop's last iteration tells who has left after all.
-    let half = splat(0.5);
-    for (orbits, found) in [a, b].into_iter().zip(found.chunks_exact_mut(8)) {
+    let [a, b] = [a, b].map(|orbits| {
         let mut last = orbits;
         last.step(limit, one, zero);
-        let left = orbits.inside & !last.inside;
-        (orbits.k + left.select(half, zero)).store_slice(found);
-    }
+        (orbits.inside & !last.inside).to_bitmask() as u32
+    });
+    a | b << 8
 }
 
 #[cfg(test)]

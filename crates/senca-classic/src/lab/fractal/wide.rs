@@ -177,8 +177,13 @@ impl WideComplex {
         .normal()
     }
 
+    /// Times 2^`power`.
+    pub(super) fn times_power(self, power: i64) -> Self {
+        if self.is_zero() { self } else { Self { exponent: self.exponent + power, ..self } }
+    }
+
     pub(super) fn doubled(self) -> Self {
-        if self.is_zero() { self } else { Self { exponent: self.exponent + 1, ..self } }
+        self.times_power(1)
     }
 
     fn is_zero(self) -> bool {

@@ -106,7 +106,7 @@ impl Picture {
     /// The caller asked to stop.
     pub fn counts(&self, moduli: bool, control: &Control<'_>) -> Result<Counts, Cancelled> {
         if self.is_deep() {
-            return deep_counts(&self.deep(), control);
+            return deep_counts(&self.deep(), Level::new(), control);
         }
         counts(&self.shallow(), moduli, Level::new(), control)
     }

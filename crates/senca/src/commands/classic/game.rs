@@ -90,7 +90,8 @@ const EXAMPLES: &str = "\
 Keys:
   arrows       ahead, back, turn               page up, page down  rise, sink
   , .          aside                           a z, q e            pitch, roll
-  t            textured, shaded, flat, wire    m                   mapping of textures
+  t            textured, lit, shaded, flat, wire
+  m            mapping of textures
   f            numbers of the rotation         b                   numbers of the textures
   c            how is cut                      v, n                volume, clipping plane on or off
   p, l         parallel; focus                 d                   exact, difference
@@ -116,6 +117,8 @@ enum ShowChoice {
 enum SurfaceChoice {
     /// Textures, and intensities where there are none
     Textured,
+    /// Textures under light from corner to corner
+    Lit,
     /// Intensities from corner to corner
     Shaded,
     /// One colour a face
@@ -157,6 +160,7 @@ impl Arguments {
             },
             surface: match self.surface {
                 SurfaceChoice::Textured => Surface::Textured,
+                SurfaceChoice::Lit => Surface::Lit,
                 SurfaceChoice::Shaded => Surface::Shaded,
                 SurfaceChoice::Flat => Surface::Flat,
                 SurfaceChoice::Wire => Surface::Wire,
@@ -359,8 +363,13 @@ mod tests {
 
     #[test]
     fn measures_are_told_by_name() {
-        let world =
-            senca_classic::game::World { bodies: vec![], textures: vec![], palette: [0; 256], sky: 0 };
+        let world = senca_classic::game::World {
+            bodies: vec![],
+            textures: vec![],
+            palette: [0; 256],
+            sky: 0,
+            lights: senca_classic::game::LightTable::from_fn(|color, _| color),
+        };
         let measures = measure(&world, &[]);
         let value: Value = serde_json::from_str(&as_json(&measures)).expect("JSON");
         let affine = value["wall_error_texels"]["affine"]["max"].as_f64().expect("a number");

@@ -7,7 +7,7 @@ use senca::math::Control;
 use senca_classic::lab::LabError;
 use senca_classic::lab::fractal::{
     Coloring, Counts, Family, Fixed, Level, MAX_BOUND, MAX_ITERATIONS, Parameters, Picture, View, Wide,
-    brute_counts, colored, counts, leave, literal_counts, trace, zoom_widths,
+    brute_counts, colored, counts, deep_counts, leave, literal_counts, trace, zoom_widths,
 };
 use senca_classic::lab::programs::FractalProgram;
 use senca_window::{Canvas, Event, Flow, Program};
@@ -217,7 +217,7 @@ fn computed(arguments: &Arguments, job: &Job, interrupt: &Interrupt) -> Result<C
         (Job::Area(p), _) => counts(p, arguments.smooth, Level::new(), &control),
         (Job::View(p), "literal") => literal_counts(&p.shallow(), &control),
         (Job::View(p), "digits") => brute_counts(&p.deep(), &control),
-        (Job::View(p), "perturbation") => senca_classic::lab::fractal::deep_counts(&p.deep(), &control),
+        (Job::View(p), "perturbation") => deep_counts(&p.deep(), Level::new(), &control),
         (Job::View(p), _) => p.counts(arguments.smooth, &control),
     };
     progress.finish();

@@ -9,7 +9,8 @@ fn view(re: &str, im: &str, width: &str, iterations: u32, size: [usize; 2]) -> D
 #[track_caller]
 fn agrees(view: &DeepView) -> Counts {
     let control = Control::default();
-    let deep = deep_counts(view, &control).expect("nobody stops it");
+    let deep = deep_counts(view, Level::new(), &control).expect("nobody stops it");
+    assert!(deep == deep_counts_one_by_one(view, &control).expect("nobody stops it"), "the same bits");
     let brute = brute_counts(view, &control).expect("nobody stops it");
     let different = deep.k.iter().zip(&brute.k).filter(|(a, b)| a != b).count();
     assert_eq!(different, 0, "{:?}\n{:?}", deep.k, brute.k);
@@ -57,7 +58,8 @@ fn a_small_copy_of_the_whole_set() {
     );
     let counts = agrees(&view(re, im, "4e-28", 8_000, [8, 6]));
     has_detail(&counts, 20);
-    let copy = deep_counts(&view(re, im, "2e-29", 8_000, [4, 4]), &Control::default()).expect("counted");
+    let copy = deep_counts(&view(re, im, "2e-29", 8_000, [4, 4]), Level::new(), &Control::default())
+        .expect("counted");
     assert!(copy.at(2, 2) == 8_000, "the middle belongs to the set");
 }
 
@@ -104,14 +106,32 @@ fn threads_do_not_matter() {
     let view = view(PREPERIODIC, "0", "1e-25", 400, [31, 17]);
     let counts = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| deep_counts(&view, &Control::default())).expect("nobody stops it")
+        pool.install(|| deep_counts(&view, Level::new(), &Control::default())).expect("nobody stops it")
     };
     assert!(counts(1) == counts(3));
+}
+
+#[test]
+fn vector_instructions_do_not_matter() {
+    for (re, im, width, size) in [
+        (PREPERIODIC, "1e-26", "1e-25", [37, 5]),
+        ("0", "1", "1e-320", [19, 3]),
+        ("-0.75", "0.1", "0.05", [50, 7]),
+    ] {
+        let view = view(re, im, width, 700, size);
+        let control = Control::default();
+        let one_by_one = deep_counts_one_by_one(&view, &control).expect("nobody stops it");
+        for level in [Level::new(), Level::baseline()] {
+            assert!(deep_counts(&view, level, &control).expect("nobody stops it") == one_by_one, "{re}");
+        }
+    }
 }
 
 #[test]
 fn the_caller_can_stop_it() {
     let stop = std::sync::atomic::AtomicBool::new(true);
     let control = Control { cancel: Some(&stop), ..Control::default() };
-    assert_eq!(deep_counts(&view("0", "0", "1", 9, [2, 2]), &control), Err(Cancelled));
+    let view = view("0", "0", "1", 9, [2, 2]);
+    assert_eq!(deep_counts(&view, Level::new(), &control), Err(Cancelled));
+    assert_eq!(deep_counts_one_by_one(&view, &control), Err(Cancelled));
 }
