@@ -83,6 +83,30 @@ fn saved_scenes_give_the_same_picture() {
 }
 
 #[test]
+fn ranges_of_indices_have_profiles_of_their_own() {
+    let folder = folder();
+    let run = |words: &str| {
+        let output = classic(folder.path(), words, "");
+        assert!(output.status.success(), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    let profiles = "--colors 127 --profile green.lut --profile clay.lut";
+    run(&format!("render patches.dat --ranges objects {profiles} -o direct.png"));
+    run("render patches.dat --ranges objects --colors 127 --bitmap two.btm");
+    run(&format!("lut two.btm {profiles} -o painted.png"));
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
+    assert_eq!(bytes("direct.png"), bytes("painted.png"));
+    for (words, part) in [
+        ("render house.dat --ranges surfaces", "expected"),
+        ("render patches.dat --ranges objects --colors 4 --json", "4 colours are too few for 2 ranges"),
+        ("lut two.btm --profile green.lut --profile clay.lut", "the editor has one profile"),
+    ] {
+        let output = classic(folder.path(), words, "");
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && told.contains(part), "{words}: {told}");
+    }
+}
+
+#[test]
 fn bad_input_is_told_with_its_place() {
     let folder = folder();
     std::fs::write(folder.path().join("bad.lut"), "node 0 0 0 0\nnode 0 0 2 1\n").expect("writes");

@@ -79,6 +79,28 @@ impl Lut {
         lut
     }
 
+    /// The table of several profiles for a picture with so many ranges of indices (see
+    /// [`Ranges`](super::Ranges)): range k has the colours of profile k, beginning again with the first when
+    /// there are fewer. The background is the first one's. Indices behind the last range keep their greys.
+    #[must_use]
+    pub fn of_profiles(profiles: &[Profile], ranges: u32, colors: u32) -> Self {
+        let mut lut = Self::mono(colors);
+        let range = (colors.saturating_sub(1) / ranges.max(1)) as usize;
+        let (Some(first), Some((background, indices))) = (profiles.first(), lut.colors.split_first_mut())
+        else {
+            return lut;
+        };
+        *background = first.background;
+        let ranges = indices.chunks_exact_mut(range.max(1)).take(ranges as usize);
+        for (colors, profile) in ranges.zip(profiles.iter().cycle()) {
+            let last = colors.len() - 1;
+            for (i, color) in colors.iter_mut().enumerate() {
+                *color = profile.color(if last == 0 { 1.0 } else { i as f64 / last as f64 });
+            }
+        }
+        lut
+    }
+
     /// Sets all colours from a profile: index 0 is the background, index i shows the cosine
     /// `(i - 1) / (n - 2)`.
     pub fn set_profile(&mut self, profile: &Profile) {
@@ -187,6 +209,25 @@ mod tests {
                 assert!(color[0] == 0.0 && color[2] == 0.0 && (color[1] - green).abs() < 5e-5, "{color:?}");
             }
         }
+    }
+
+    #[test]
+    fn ranges_have_profiles_of_their_own() {
+        let red = |x, red| Node { rgb: [red, 0.0, 0.0], x };
+        let red = Profile {
+            nodes: vec![red(0.0, 0.25), red(1.0, 0.75)],
+            background: [0.5; 3],
+            ..Profile::default()
+        };
+        let lut = Lut::of_profiles(&[Profile::default(), red.clone()], 3, 16);
+        assert_eq!(lut.colors[0], [1.0; 3]);
+        assert_eq!([1, 5, 6, 10, 11, 15].map(|i| lut.colors[i][0]), [0.0, 0.0, 0.25, 0.75, 0.0, 0.0]);
+        assert_eq!([1, 5, 6, 10, 11, 15].map(|i| lut.colors[i][1]), [0.1, 1.0, 0.0, 0.0, 0.1, 1.0]);
+        assert_eq!(lut.colors[8], [0.5, 0.0, 0.0]);
+        assert_eq!(Lut::of_profiles(std::slice::from_ref(&red), 1, 16), Lut::of_profile(&red, 16));
+        let beyond = Lut::of_profiles(&[red], 4, 16);
+        assert_eq!(beyond.colors[13..], Lut::mono(16).colors[13..]);
+        assert_eq!(Lut::of_profiles(&[], 2, 16), Lut::mono(16));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use senca_math::ViewError;
 
 use super::database::Database;
 use super::device::empty_bitmap;
-use super::shade::{ShadeStyle, shade};
+use super::shade::{Ranges, ShadeStyle, shade};
 use super::view::DeviceView;
 use super::wireframe::{NormalsDrawn, WireStyle, draw_normals, draw_wireframe};
 
@@ -14,7 +14,7 @@ use super::wireframe::{NormalsDrawn, WireStyle, draw_normals, draw_wireframe};
 const MAX_PIXELS: u64 = 1 << 26;
 
 /// Settings of the renderer that its scene file does not have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
     /// Number of colour indices, 2 to 65536: 16 on a PC of the time, 256 with eight bit planes.
     /// Default 16.
@@ -31,6 +31,11 @@ pub struct RenderSettings {
     /// Width and height of the screen; a scene that wants more rows is refused, and so are more
     /// columns unless `as_printed`. Default none.
     pub screen: Option<[u32; 2]>,
+    /// What has a range of colour indices of its own. Default the scene.
+    pub ranges: Ranges,
+    /// After Phong, the cosine from which highlights begin: polygons that cannot have it are shaded after
+    /// Gouraud, which is cheaper. Default none: all are shaded after Phong.
+    pub highlight: Option<f64>,
     /// Whether the listing is followed where it differs from the text. Default no.
     pub as_printed: bool,
 }
@@ -44,6 +49,8 @@ impl Default for RenderSettings {
             clip: false,
             normals: NormalsDrawn::default(),
             screen: None,
+            ranges: Ranges::default(),
+            highlight: None,
             as_printed: false,
         }
     }
@@ -81,6 +88,10 @@ pub struct RenderReport {
     pub normals: usize,
     /// Polygons that turn their back.
     pub culled: usize,
+    /// Polygons that were shaded after Phong.
+    pub after_phong: usize,
+    /// Ranges of colour indices.
+    pub ranges: u32,
     /// Pixels of the picture with each colour index.
     pub histogram: Vec<u64>,
 }
@@ -102,6 +113,14 @@ pub enum ThesisError {
     /// A number of colours that is not 2 to 65536.
     #[error("{0} colours: there must be 2 to 65536")]
     Colors(u32),
+    /// Too few colours for the ranges of the scene.
+    #[error("{colors} colours are too few for {ranges} ranges: with the background they take {}", 2 * ranges + 1)]
+    Ranges {
+        /// Number of colours.
+        colors: u32,
+        /// Ranges of the scene, each of at least two colours.
+        ranges: u32,
+    },
 }
 
 /// Draws the scene with its database: places all vertices, makes normals, marks the polygons that turn
@@ -120,6 +139,11 @@ pub fn render(
         return Err(ThesisError::Colors(settings.colors));
     }
     check_raster(name, scene, settings)?;
+    let ranges = settings.ranges.count(database);
+    let range = (settings.colors - 1) / ranges;
+    if ranges > 1 && range < 2 {
+        return Err(ThesisError::Ranges { colors: settings.colors, ranges });
+    }
     database.place();
     let view = view(name, scene, database, settings)?;
     for vertex in database.objects.iter_mut().flat_map(|object| &mut object.vertices) {
@@ -132,7 +156,9 @@ pub fn render(
     let shaded = scene.light.filter(|_| faces).map(|light| {
         let style = ShadeStyle {
             raster: raster(scene),
-            colors: settings.colors,
+            colors: range + 1,
+            ranges: settings.ranges,
+            highlight: settings.highlight,
             light: light.normalize_or_zero(),
             culled: settings.back_faces.unwrap_or(settings.as_printed),
             clip: settings.clip,
@@ -141,7 +167,12 @@ pub fn render(
         };
         shade(database, &view, scene.operation, &style)
     });
-    let report = report(database, shaded.as_ref().unwrap_or(&wireframe), settings.colors);
+    let (shaded, after_phong) = shaded.unzip();
+    let report = RenderReport {
+        after_phong: after_phong.unwrap_or(0),
+        ranges,
+        ..report(database, shaded.as_ref().unwrap_or(&wireframe), settings.colors)
+    };
     Ok(Rendering { wireframe, shaded, report })
 }
 
@@ -224,7 +255,7 @@ fn report(database: &Database, picture: &IndexBitmap, colors: u32) -> RenderRepo
     }
     let all = database.objects.iter().flat_map(|object| &object.polygons);
     let culled = all.filter(|polygon| polygon.culled).count();
-    RenderReport { vertices, polygons, surfaces, normals, culled, histogram }
+    RenderReport { vertices, polygons, surfaces, normals, culled, histogram, ..RenderReport::default() }
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use super::clip::{Attribute, ClipVertex, clip_polygon};
 use super::database::{Database, Object, Polygon};
 use super::device::{SetPixel, empty_bitmap};
 use super::edges::{EdgeTable, pixels};
+use super::highlight::may_have_highlight;
 use super::view::{DeviceView, depth_range};
 
 /// How faces are shaded.
@@ -18,8 +19,12 @@ use super::view::{DeviceView, depth_range};
 pub(super) struct ShadeStyle {
     /// Width and height of the raster.
     pub(super) raster: [u32; 2],
-    /// Number of colours, at least 2.
+    /// Indices from the background to the last one of a range, at least 2.
     pub(super) colors: u32,
+    /// What has a range of indices of its own.
+    pub(super) ranges: Ranges,
+    /// After Phong, the cosine from which polygons are; those that cannot have it are shaded after Gouraud.
+    pub(super) highlight: Option<f64>,
     /// Unit vector towards the light.
     pub(super) light: DVec3,
     /// Whether faces that turn their back are drawn.
@@ -32,49 +37,106 @@ pub(super) struct ShadeStyle {
     pub(super) as_printed: bool,
 }
 
-/// Draws all faces into a bitmap, after Phong or Gouraud.
+/// What has a range of colour indices of its own, so that a look-up table can give it colours of its own: "a
+/// part of the table must be reserved for every surface type" (1991 thesis, section 8.3). Range k of n, from 0,
+/// has the indices 1 + k r to (k + 1) r, r being the colours but the background, divided by n. The program has
+/// one range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ranges {
+    /// One range for the whole scene.
+    #[default]
+    Scene,
+    /// One for each object.
+    Objects,
+    /// One for each surface of each object.
+    Surfaces,
+}
+
+impl Ranges {
+    /// How many a scene has, at least 1.
+    pub(super) fn count(self, database: &Database) -> u32 {
+        let count = match self {
+            Self::Scene => 1,
+            Self::Objects => database.objects.len(),
+            Self::Surfaces => database.objects.iter().map(|object| object.surfaces.len()).sum(),
+        };
+        count.max(1) as u32
+    }
+
+    /// The range of each object's first surface, and whether its surfaces have further ones.
+    fn starts(self, database: &Database) -> Vec<(u32, bool)> {
+        let mut next = 0;
+        let start = |object: &Object| {
+            let start = next;
+            next += match self {
+                Self::Scene => 0,
+                Self::Objects => 1,
+                Self::Surfaces => object.surfaces.len() as u32,
+            };
+            (start, self == Self::Surfaces)
+        };
+        database.objects.iter().map(start).collect()
+    }
+}
+
+/// Draws all faces into a bitmap, after Phong or Gouraud; returns it and how many were drawn after Phong.
 pub(super) fn shade(
     database: &Database,
     view: &DeviceView,
     operation: ClassicOperation,
     style: &ShadeStyle,
-) -> IndexBitmap {
+) -> (IndexBitmap, usize) {
     let last = f64::from(style.colors - 2);
     let light = style.light;
-    if operation == ClassicOperation::Gouraud {
-        let intensity = |normal: DVec3| normal.dot(light);
-        return draw(database, view, style, intensity, |intensity: f64| {
-            (intensity.max(0.0) * last + 1.0) as u32
-        });
-    }
-    let cosine = move |normal: DVec3| normal.normalize_or_zero().dot(light);
-    draw(database, view, style, |normal| normal, move |normal| 1 + (cosine(normal) * last).max(0.0) as u32)
-}
-
-/// Draws all faces; `of_normal` gives what is interpolated, `index` a pixel's colour of it.
-fn draw<A: Attribute + Resettable>(
-    database: &Database,
-    view: &DeviceView,
-    style: &ShadeStyle,
-    of_normal: impl Fn(DVec3) -> A,
-    index: impl Fn(A) -> u32,
-) -> IndexBitmap {
     let mut buffers = Buffers::new(style);
-    let mut table = EdgeTable::new(style.raster[1]);
-    for object in &database.objects {
+    let mut intensities = EdgeTable::new(style.raster[1]);
+    let mut normals = EdgeTable::new(style.raster[1]);
+    let mut after_phong = 0;
+    for (object, (start, by_surface)) in database.objects.iter().zip(style.ranges.starts(database)) {
         for polygon in object.polygons.iter().filter(|polygon| style.culled || !polygon.culled) {
-            let corners = on_device(object, polygon, view, style, &of_normal);
-            table.enter(&corners);
-            for (row, left, right) in table.runs(style.as_printed) {
-                let mut lowered = A::NONE;
-                for (x, z, attribute) in pixels(left, right, style.raster[0], style.as_printed) {
-                    let attribute = if style.as_printed { attribute.reset(&mut lowered) } else { attribute };
-                    buffers.pixel(x, row as u32, z, || index(attribute));
-                }
+            let range = if by_surface { start + polygon.surface as u32 } else { start };
+            let first = 1 + range * (style.colors - 1);
+            let is_phong = operation != ClassicOperation::Gouraud && wants_phong(object, polygon, style);
+            if is_phong {
+                after_phong += 1;
+                normals.enter(&on_device(object, polygon, view, style, &|normal| normal));
+                let cosine = |normal: DVec3| normal.normalize_or_zero().dot(light);
+                fill(&mut buffers, &mut normals, style, |normal| {
+                    first + (cosine(normal) * last).max(0.0) as u32
+                });
+            } else {
+                intensities
+                    .enter(&on_device(object, polygon, view, style, &|normal: DVec3| normal.dot(light)));
+                fill(&mut buffers, &mut intensities, style, |intensity: f64| {
+                    first - 1 + (intensity.max(0.0) * last + 1.0) as u32
+                });
             }
         }
     }
-    buffers.indices
+    (buffers.indices, after_phong)
+}
+
+/// Whether a polygon is shaded after Phong, where that is asked for.
+fn wants_phong(object: &Object, polygon: &Polygon, style: &ShadeStyle) -> bool {
+    let normals = || polygon.corners.iter().map(|corner| object.normals[corner.normal].normal);
+    let test = |least| may_have_highlight(&normals().collect::<Vec<_>>(), style.light, least);
+    style.highlight.is_none_or(test)
+}
+
+/// Fills the polygon that was entered last; `index` gives a pixel's colour.
+fn fill<A: Attribute + Resettable>(
+    buffers: &mut Buffers,
+    table: &mut EdgeTable<A>,
+    style: &ShadeStyle,
+    index: impl Fn(A) -> u32,
+) {
+    for (row, left, right) in table.runs(style.as_printed) {
+        let mut lowered = A::NONE;
+        for (x, z, attribute) in pixels(left, right, style.raster[0], style.as_printed) {
+            let attribute = if style.as_printed { attribute.reset(&mut lowered) } else { attribute };
+            buffers.pixel(x, row as u32, z, || index(attribute));
+        }
+    }
 }
 
 /// The polygon's corners in device coordinates, clipped unless the listing is followed.
@@ -170,7 +232,8 @@ mod tests {
 
     fn style(width: IntegerWidth, as_printed: bool) -> ShadeStyle {
         let (raster, colors, light) = ([2, 2], 16, DVec3::Z);
-        ShadeStyle { raster, colors, light, culled: false, clip: false, width, as_printed }
+        let (ranges, highlight) = (Ranges::Scene, None);
+        ShadeStyle { raster, colors, ranges, highlight, light, culled: false, clip: false, width, as_printed }
     }
 
     #[test]

@@ -20,6 +20,9 @@ const TOGETHER: usize = 16;
 /// Iterations between two looks at whether all have left.
 const UNLOOKED: u32 = 4;
 
+/// Rounds after which orbits are remembered for the first time, to see whether they come back.
+const FIRST_MARK: u32 = 8;
+
 /// Rounds between two looks at whether the caller wants to stop.
 const UNSTOPPED: u32 = 1 << 16;
 
@@ -227,7 +230,7 @@ fn counts_together<S: Simd>(
 
     // k only grows while it is below m, so m iterations tell it.
     let rounds = parameters.iterations / UNLOOKED;
-    let mut next_mark = 8;
+    let mut next_mark = FIRST_MARK;
     for round in 1..=rounds {
         for _ in 0..UNLOOKED {
             a.step(limit, one, zero);
@@ -236,7 +239,7 @@ fn counts_together<S: Simd>(
         if !(a.inside | b.inside).any_true() {
             break;
         }
-        if round % 4 == 0 {
+        if round % 4 == 0 && round >= FIRST_MARK {
             a.take_out_returned(iterations);
             b.take_out_returned(iterations);
             if round % UNSTOPPED == 0 && control.is_cancelled() {

@@ -242,3 +242,55 @@ fn a_moved_vertex_takes_its_normals_along() {
     let (_, before) = run(&scene, &RenderSettings::default());
     assert_ne!(moved.objects[0].normals, before.objects[0].normals);
 }
+
+#[test]
+fn polygons_with_highlights_are_shaded_after_phong() {
+    let scene = scene("teapot1.dat");
+    let with = |highlight, operation| {
+        let scene = ClassicScene { operation, ..scene.clone() };
+        let settings = RenderSettings { colors: 64, highlight, ..RenderSettings::default() };
+        run(&scene, &settings).0
+    };
+    let phong = with(None, ClassicOperation::Phong);
+    let mixed = with(Some(0.9), ClassicOperation::Phong);
+    let gouraud = with(None, ClassicOperation::Gouraud);
+    let visible = phong.report.polygons - phong.report.culled;
+    assert_eq!((phong.report.after_phong, gouraud.report.after_phong), (visible, 0));
+    assert!((1..visible / 2).contains(&mixed.report.after_phong), "{}", mixed.report.after_phong);
+    // Where Phong has a highlight it has not changed, and nothing else became one.
+    let first = 1 + (0.9 * 62.0) as u32;
+    for (&mixed, &phong) in mixed.picture().indices.iter().zip(&phong.picture().indices) {
+        assert!(mixed == phong || mixed.max(phong) <= first, "{mixed} {phong}");
+    }
+    assert_ne!(mixed.picture(), phong.picture());
+    let none = with(Some(1.1), ClassicOperation::Phong);
+    assert_eq!((none.report.after_phong, none.picture() == gouraud.picture()), (0, true));
+    let all = with(Some(-2.0), ClassicOperation::Phong);
+    assert_eq!(all.picture(), phong.picture());
+}
+
+#[test]
+fn objects_and_surfaces_have_ranges_of_indices() {
+    let scene = scene("patches.dat");
+    let with = |ranges, colors| {
+        let mut database = load(&scene, BuildAlgorithm::AsRead);
+        render("p", &scene, &mut database, &RenderSettings { ranges, colors, ..RenderSettings::default() })
+    };
+    let one = with(Ranges::Scene, 16).expect("a picture");
+    let two = with(Ranges::Objects, 31).expect("a picture");
+    assert_eq!((one.report.ranges, two.report.ranges), (1, 2));
+    // 15 indices each: the same shades, the second object's behind the first one's.
+    for (&one, &two) in one.picture().indices.iter().zip(&two.picture().indices) {
+        assert!(two == one || (one > 0 && two == one + 15), "{one} {two}");
+    }
+    let of = |range: std::ops::RangeInclusive<usize>| two.report.histogram[range].iter().sum::<u64>();
+    assert!(of(1..=15) > 100 && of(16..=30) > 100);
+    let error = with(Ranges::Objects, 4).expect_err("too few");
+    assert_eq!(error.to_string(), "4 colours are too few for 2 ranges: with the background they take 5");
+    // Each polygon of the house is a surface.
+    let house = sample("house.dat");
+    let settings = RenderSettings { ranges: Ranges::Surfaces, colors: 27, ..RenderSettings::default() };
+    let (rendering, _) = run(&house, &settings);
+    assert_eq!(rendering.report.ranges, 13);
+    assert!(rendering.picture().indices.iter().all(|&i| (1..=2).contains(&i) || (15..=16).contains(&i)));
+}

@@ -28,9 +28,9 @@ pub(super) struct ColorArguments {
     #[arg(long, value_enum)]
     pub(super) palette: Option<Palette>,
 
-    /// Profile of the look-up table, from a file
+    /// Profile of the look-up table, from a file; several for ranges of indices, one after the other
     #[arg(long, value_name = "FILE", conflicts_with = "palette", value_hint = ValueHint::FilePath)]
-    pub(super) profile: Option<PathBuf>,
+    pub(super) profile: Vec<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -65,18 +65,30 @@ impl ColorArguments {
         }
     }
 
-    /// The profile, if there is one.
-    pub(super) fn profile(&self) -> Result<Option<Profile>, Failure> {
-        let Some(path) = &self.profile else { return Ok(None) };
-        let (name, text) = read_text(path)?;
-        Ok(Some(Profile::parse(&name, &text)?))
+    /// The profiles.
+    pub(super) fn profiles(&self) -> Result<Vec<Profile>, Failure> {
+        let read = |path: &PathBuf| {
+            let (name, text) = read_text(path)?;
+            Ok(Profile::parse(&name, &text)?)
+        };
+        self.profile.iter().map(read).collect()
     }
 
-    /// The table.
-    pub(super) fn lut(&self) -> Result<Lut, Failure> {
+    /// The profile that the editor begins with, if there is one.
+    pub(super) fn profile(&self) -> Result<Option<Profile>, Failure> {
+        let mut profiles = self.profiles()?;
+        if profiles.len() > 1 {
+            return Err(Failure::usage("the editor has one profile; several are for pictures with -o"));
+        }
+        Ok(profiles.pop())
+    }
+
+    /// The table for a picture with so many ranges of indices.
+    pub(super) fn lut(&self, ranges: u32) -> Result<Lut, Failure> {
         let count = self.count();
-        if let Some(profile) = self.profile()? {
-            return Ok(Lut::of_profile(&profile, count));
+        let profiles = self.profiles()?;
+        if !profiles.is_empty() {
+            return Ok(Lut::of_profiles(&profiles, ranges, count));
         }
         match self.palette {
             Some(Palette::Ega) => Lut::ega(count).map_err(Failure::usage),

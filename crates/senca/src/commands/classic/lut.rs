@@ -53,16 +53,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(bitmap) = bitmap {
         editor = editor.with_bitmap(bitmap);
     }
+    let how = &arguments.interactive;
+    if colors.profile.len() > 1
+        && let Some(path) = how.output.as_ref().filter(|_| !how.window && how.script.is_none())
+    {
+        check_writable(path)?;
+        let lut = colors.lut(colors.profile.len() as u32)?;
+        return write_picture(path, &paint(editor.bitmap(), &lut), &interrupt);
+    }
     match colors.profile()? {
         Some(profile) => editor = editor.with_profile(profile),
         // The editor begins with greys; another palette is one of its commands.
         None if colors.palette == Some(Palette::Ega) => {
-            colors.lut()?;
+            colors.lut(1)?;
             editor.line("E", &mut files);
         }
         None => {}
     }
-    let how = &arguments.interactive;
     if how.window || how.script.is_some() {
         let mut window = LutWindow::new(editor, Box::new(files));
         interactive::run(&mut window, "lut", how, &interrupt)?;

@@ -4,8 +4,8 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
 use senca::classic::thesis::{
-    BuildAlgorithm, Database, LutEditor, LutWindow, NormalsDrawn, RenderSettings, Rendering, ThesisError,
-    object_text, packed_size, paint, render, scene_text, transfer_seconds,
+    BuildAlgorithm, Database, LutEditor, LutWindow, NormalsDrawn, Ranges, RenderSettings, Rendering,
+    ThesisError, object_text, packed_size, paint, render, scene_text, transfer_seconds,
 };
 use senca::io::Directory;
 use senca::io::classic::{ClassicScene, IndexBitmap, IntegerWidth};
@@ -44,6 +44,15 @@ pub(crate) struct Arguments {
     /// Operation in place of the scene file's, where that has a light
     #[arg(long, value_enum)]
     operation: Option<Operation>,
+
+    /// After Phong, shades only polygons that can have a cosine from this one on after Phong, and the others,
+    /// which have no highlight, after Gouraud
+    #[arg(long, value_name = "COSINE", value_parser = clap::value_parser!(f64))]
+    highlight: Option<f64>,
+
+    /// What has a range of colour indices of its own, so that it can have a profile of its own
+    #[arg(long, value_enum, default_value_t = RangesOf::Scene)]
+    ranges: RangesOf,
 
     /// Draws polygons that turn their back, too, or not [default: not; faces are with --as-printed]
     #[arg(long, value_name = "yes|no", value_parser = yes_or_no)]
@@ -111,6 +120,16 @@ enum Normals {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
+enum RangesOf {
+    /// One for all
+    Scene,
+    /// Each object
+    Objects,
+    /// Each surface of each object
+    Surfaces,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
 enum Build {
     /// All records in tables first, then the links
     Tables,
@@ -160,7 +179,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn failure(error: ThesisError) -> Failure {
     match error {
-        ThesisError::Colors(_) => Failure::usage(error),
+        ThesisError::Colors(_) | ThesisError::Ranges { .. } => Failure::usage(error),
         ThesisError::Read(_) | ThesisError::View { .. } => Failure::input(error),
     }
 }
@@ -176,6 +195,12 @@ fn settings(arguments: &Arguments) -> RenderSettings {
             Normals::Visible => NormalsDrawn::OfVisibleVertices,
         },
         screen: arguments.screen.map(|size| [size.width, size.height]),
+        ranges: match arguments.ranges {
+            RangesOf::Scene => Ranges::Scene,
+            RangesOf::Objects => Ranges::Objects,
+            RangesOf::Surfaces => Ranges::Surfaces,
+        },
+        highlight: arguments.highlight,
         as_printed: arguments.as_printed,
     }
 }
@@ -235,7 +260,7 @@ fn write_all(
             tell(&format!("senca: wrote {}", path.display()));
         }
     }
-    let lut = arguments.colors.lut()?;
+    let lut = arguments.colors.lut(rendering.report.ranges)?;
     for (path, picture) in [(&arguments.output, rendering.picture()), (&arguments.wire, &rendering.wireframe)]
     {
         if let Some(path) = path {
@@ -275,6 +300,8 @@ fn report(arguments: &Arguments, rendering: &Rendering) -> String {
         "surfaces": report.surfaces,
         "vertex_normals": report.normals,
         "culled": report.culled,
+        "after_phong": report.after_phong,
+        "ranges": report.ranges,
         "pixels_of_index": report.histogram,
         "bitmap_bytes": bytes,
         "packed_bytes": packed_size(picture),
