@@ -88,14 +88,14 @@ pub fn clip_line<const N: usize>(
     let mut first_clipped = false;
     if low[axis] < min || (is_printed && low[axis] == min) {
         low = match search {
-            Search::AsPrinted => halve_as_printed(low, high, Side::Low, axis, min),
+            Search::AsPrinted => halve_as_printed(low, high, Side::Low, axis, min).0,
             _ => crossing(low, high, axis, min, search),
         };
         first_clipped |= !swapped;
     }
     if high[axis] > max {
         high = match search {
-            Search::AsPrinted => halve_as_printed(low, high, Side::High, axis, max),
+            Search::AsPrinted => halve_as_printed(low, high, Side::High, axis, max).0,
             _ => crossing(low, high, axis, max, search),
         };
         first_clipped |= swapped;
@@ -123,15 +123,17 @@ enum Side {
     High,
 }
 
-/// The search as printed: the upper end is the first candidate, and each midpoint is the next.
+/// The search as printed: the upper end is the first candidate, and each midpoint is the next. Returns the place
+/// found, and after how many midpoints.
 fn halve_as_printed<const N: usize>(
     low: [i32; N],
     high: [i32; N],
     side: Side,
     axis: usize,
     edge: i32,
-) -> [i32; N] {
+) -> ([i32; N], u32) {
     let (mut left, mut right, mut middle) = (low, high, high);
+    let mut midpoints = 0;
     while middle[axis] != edge {
         let is_left = match side {
             Side::Low => middle[axis] < edge,
@@ -143,8 +145,9 @@ fn halve_as_printed<const N: usize>(
             right = middle
         }
         middle = std::array::from_fn(|k| midpoint(left[k], right[k]));
+        midpoints += 1;
     }
-    middle
+    (middle, midpoints)
 }
 
 /// Half of the sum, rounded down: what `(a + b) >> 1` gives where the sum fits.

@@ -75,6 +75,54 @@ fn the_search_ends() {
     }
 }
 
+#[test]
+fn the_search_ends_after_six_midpoints_a_side() {
+    let mut most = 0;
+    for low in -25..=44 {
+        for high in low..=44 {
+            for (side, edge) in [(Side::Low, 0), (Side::High, 19)] {
+                if low <= edge && high >= edge {
+                    most = most.max(halve_as_printed([low, 0], [high, 100], side, 0, edge).1);
+                }
+            }
+        }
+    }
+    assert_eq!(most, 6, "so a line that is cut at both sides takes 12");
+}
+
+/// Chance that is the same every time (Knuth's linear congruence).
+struct Chance(u64);
+
+impl Chance {
+    fn between(&mut self, low: i32, high: i32) -> i32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + ((self.0 >> 33) % (high - low + 1) as u64) as i32
+    }
+}
+
+#[test]
+fn errors_as_printed_grow_with_the_slope() {
+    let mut chance = Chance(1);
+    // Below and above the exact row, for slopes up to 1, from 2 to 10 and from 10 to 50.
+    let mut errors = [[0.0_f64; 2]; 3];
+    for _ in 0..100_000 {
+        let [x1, x2] = [chance.between(-200, -1), chance.between(0, 319)];
+        let [y1, y2] = [chance.between(-3000, 3000), chance.between(-3000, 3000)];
+        let slope = f64::from(y2 - y1) / f64::from(x2 - x1);
+        let band = match slope.abs() {
+            0.0..1.0 => 0,
+            2.0..10.0 => 1,
+            10.0..50.0 => 2,
+            _ => continue,
+        };
+        let cut = clip_line([[x1, y1], [x2, y2]], Bounds::columns(320), Search::AsPrinted).expect("crosses");
+        let error = f64::from(cut.start[1]) - (f64::from(y1) - slope * f64::from(x1));
+        errors[band] = [errors[band][0].min(error), errors[band][1].max(error)];
+    }
+    let rounded = errors.map(|band| band.map(|error| (error * 10.0).round() / 10.0));
+    assert_eq!(rounded, [[-4.2, 1.4], [-26.5, 24.1], [-99.0, 92.2]]);
+}
+
 /// Largest distance in y between a line cut at `x = 0` and the exact place, for lines of slopes from `from` to `to`.
 fn largest_error(from: f64, to: f64, search: Search) -> f64 {
     let mut largest = 0f64;

@@ -135,6 +135,23 @@ fn multiplications_are_12_or_9_and_16() {
 }
 
 #[test]
+fn fixed_and_floating_point_in_20_000_trials() {
+    let mut state = 1u64;
+    let mut chance = |count: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % count
+    };
+    let mut most = 0;
+    for _ in 0..20_000 {
+        let [alp, bet, gam] = std::array::from_fn(|_| chance(256) as u8);
+        let point = std::array::from_fn(|_| chance(2001) as i32 - 1000);
+        let (a, b) = (float(alp, bet, gam).rotate_point(point), fixed(alp, bet, gam).rotate_point(point));
+        most = (0..3).fold(most, |most, k| most.max(a[k].abs_diff(b[k])));
+    }
+    assert_eq!(most, 7);
+}
+
+#[test]
 fn points_that_are_rotated_over_and_over_drift() {
     let step = float(0, 0, 1);
     let mut point = [1000, 0, 0];

@@ -72,6 +72,18 @@ mod tests {
         assert_eq!(test_volume(&[[i32::MIN; 3], [i32::MAX; 3]], 10), VolumeTest::CrossesPlane);
     }
 
+    #[test]
+    fn with_a_wide_angle_what_is_seen_may_be_thrown_away() {
+        // With a focus of 128 the screen's edge is x = 1.25 z, with 256 it is 0.625 z.
+        let points = [[110, 0, 100], [120, 0, 100], [115, 10, 105]];
+        assert_eq!(test_volume(&points, 10), VolumeTest::Outside);
+        let on_screen = |log_focus| {
+            let lens = crate::game::Lens { log_focus, ..crate::game::Lens::new(320, 200) };
+            points.iter().any(|&p| lens.project(p).is_some_and(|[x, _]| (0..320).contains(&x)))
+        };
+        assert_eq!([7, 8].map(on_screen), [true, false]);
+    }
+
     proptest! {
         #[test]
         fn nothing_that_is_seen_at_90_degrees_is_thrown_away(

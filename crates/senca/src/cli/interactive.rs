@@ -9,6 +9,7 @@ use senca::math::Srgb8;
 use senca_window::desktop::{self, DesktopError};
 use senca_window::{Canvas, Event, Program, Script, Session};
 
+use super::indexed::indexed_png;
 use super::input::read_text;
 use super::output::{self, check_writable, is_standard, tell};
 use super::values::Size;
@@ -111,8 +112,16 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
 
 /// Writes a picture, whose format its name tells.
 fn write(path: &Path, canvas: &Canvas, interrupt: &Interrupt) -> Result<(), Failure> {
-    let bytes = encode(&image_of(canvas), format_of(path)?, &PictureOptions::default())?;
-    output::write(path, &bytes, interrupt)
+    output::write(path, &encoded(canvas, format_of(path)?)?, interrupt)
+}
+
+/// The file of a picture; a PNG has a palette, where 256 colours are enough.
+pub(crate) fn encoded(canvas: &Canvas, format: PictureFormat) -> Result<Vec<u8>, Failure> {
+    let few_colors = if format == PictureFormat::Png { indexed_png(canvas) } else { None };
+    match few_colors {
+        Some(bytes) => bytes.map_err(|error| Failure::input(format!("PNG: {error}"))),
+        None => Ok(encode(&image_of(canvas), format, &PictureOptions::default())?),
+    }
 }
 
 /// Saves the picture of a window at `place`, or under a name in the current folder that is free, and tells so.

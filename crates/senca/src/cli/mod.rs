@@ -1,6 +1,7 @@
 //! What all subcommands share: values of options, output, progress, figures, and how to end.
 
 mod failure;
+mod indexed;
 pub(crate) mod input;
 pub(crate) mod interactive;
 mod interrupt;

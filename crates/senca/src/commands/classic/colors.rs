@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum, ValueHint};
 use senca::classic::thesis::{EditorFiles, Lut, Profile};
 use senca::io::classic::{IndexBitmap, IntegerWidth};
-use senca::io::images::{PictureFormat, PictureOptions, encode};
+use senca::io::images::PictureFormat;
 use senca_window::Canvas;
 
 use crate::cli::input::{read_bytes, read_text};
-use crate::cli::interactive::image_of;
+use crate::cli::interactive::encoded;
 use crate::cli::output::{self, is_standard};
 use crate::cli::{Failure, Interrupt};
 
@@ -107,8 +107,7 @@ pub(super) fn write_picture(path: &Path, canvas: &Canvas, interrupt: &Interrupt)
         PictureFormat::from_path(path)
             .ok_or_else(|| Failure::usage(format!("{} names no picture format; take .png", path.display())))?
     };
-    let bytes = encode(&image_of(canvas), format, &PictureOptions::default())?;
-    output::write(path, &bytes, interrupt)
+    output::write(path, &encoded(canvas, format)?, interrupt)
 }
 
 /// The bitmap in a file.

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
-use senca::io::images::{PictureFormat, PictureOptions, encode};
+use senca::io::images::PictureFormat;
 use senca_classic::game::{
     Arithmetic, ErrorStatistics, FilmError, FilmFormat, Flight, Mapping, Measures, Moment, Projection,
     Search, Show, Stages, Surface, TextureArithmetic, film, measure, sheet,
 };
 use serde_json::{Value, json};
 
-use crate::cli::interactive::{self, InteractiveArguments, image_of};
+use crate::cli::interactive::{self, InteractiveArguments, encoded};
 use crate::cli::output::{self, check_writable, print};
 use crate::cli::{Failure, Interrupt};
 
@@ -218,8 +218,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         write_film(&flight, moments, path, format, &interrupt)?;
     }
     if let (Some(path), Some(format)) = (&arguments.sheet, sheet_format) {
-        let picture = image_of(&sheet(flight.world(), &now[0]));
-        output::write(path, &encode(&picture, format, &PictureOptions::default())?, &interrupt)?;
+        let picture = sheet(flight.world(), &now[0]);
+        output::write(path, &encoded(&picture, format)?, &interrupt)?;
     }
     if arguments.measure || arguments.json {
         let measures = measure(flight.world(), moments);
