@@ -20,22 +20,53 @@ pub enum Solution {
 /// Solves three equations, each its coefficients of x, y and z and its right side, by the inverse of
 /// the matrix of coefficients. The manual does not say what happens to singular systems; here it is
 /// told what they have.
+///
+/// Before that, equations and unknowns are scaled by powers of two so that their largest coefficients are
+/// about 1, which changes no digit of the solution. Where the determinant is too small for the inverse but the
+/// equations are independent, they are solved by elimination.
 #[must_use]
 pub fn solve_system(equations: &[[f64; 4]; 3]) -> Solution {
-    let coefficients = Matrix(equations.map(|[x, y, z, _]| [x, y, z]));
-    let right = equations.map(|e| e[3]);
-    match coefficients.inverse() {
+    let (scaled, units) = balanced(*equations);
+    let coefficients = Matrix(scaled.map(|[x, y, z, _]| [x, y, z]));
+    let right = scaled.map(|e| e[3]);
+    let solution = match coefficients.inverse() {
         // A [x y z]^T = b, so [x y z]^T = A^-1 b; as rows, [x y z] = b (A^-1)^T.
         Some(inverse) => Solution::One(inverse.transpose().transform(right)),
-        None => singular(equations),
+        None => by_rank(scaled),
+    };
+    match solution {
+        Solution::One(found) => Solution::One(std::array::from_fn(|k| found[k] * units[k])),
+        other => other,
     }
 }
 
-/// What a singular system has, by the ranks of its matrix without and with the right side.
-fn singular(equations: &[[f64; 4]; 3]) -> Solution {
-    let without = rank(equations.map(|[x, y, z, _]| [x, y, z, 0.0]));
-    let with = rank(*equations);
+/// The equations with their largest coefficients, in each equation and of each unknown, brought near 1 by
+/// powers of two; and what the unknowns have to be multiplied by in the end.
+fn balanced(mut equations: [[f64; 4]; 3]) -> ([[f64; 4]; 3], Row3) {
+    for equation in &mut equations {
+        let unit = unit_of(equation[..3].iter());
+        *equation = equation.map(|v| v * unit);
+    }
+    let units = std::array::from_fn(|k| unit_of(equations.iter().map(|e| &e[k])));
+    for equation in &mut equations {
+        (0..3).for_each(|k| equation[k] *= units[k]);
+    }
+    (equations, units)
+}
+
+/// The power of two that brings the largest of some numbers near 1; 1 where all are 0.
+fn unit_of<'a>(numbers: impl Iterator<Item = &'a f64>) -> f64 {
+    let largest = numbers.fold(0.0_f64, |m, v| m.max(v.abs()));
+    let power = if largest > 0.0 { -largest.log2().floor() } else { 0.0 };
+    2.0_f64.powi(power.clamp(-1000.0, 1000.0) as i32)
+}
+
+/// What a system has whose matrix has no inverse, by the ranks of its matrix without and with the right side.
+fn by_rank(equations: [[f64; 4]; 3]) -> Solution {
+    let (without, _) = eliminated(equations.map(|[x, y, z, _]| [x, y, z, 0.0]));
+    let (with, rows) = eliminated(equations);
     match without {
+        3 => Solution::One(substituted(&rows)),
         _ if with > without => Solution::None,
         0 => Solution::Space,
         1 => Solution::Plane,
@@ -43,8 +74,9 @@ fn singular(equations: &[[f64; 4]; 3]) -> Solution {
     }
 }
 
-/// How many rows are independent, by elimination; what is below 1e-12 of its row's largest number is 0.
-fn rank(mut rows: [[f64; 4]; 3]) -> usize {
+/// How many rows are independent, and the rows after elimination; what is below 1e-12 of its row's largest
+/// number is 0.
+fn eliminated(mut rows: [[f64; 4]; 3]) -> (usize, [[f64; 4]; 3]) {
     for row in &mut rows {
         let largest = row.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         *row = row.map(|v| if largest > 0.0 { v / largest } else { v });
@@ -60,7 +92,17 @@ fn rank(mut rows: [[f64; 4]; 3]) -> usize {
         }
         rank += 1;
     }
-    rank
+    (rank, rows)
+}
+
+/// The unknowns of three eliminated equations, the last one first.
+fn substituted(rows: &[[f64; 4]; 3]) -> Row3 {
+    let mut found = [0.0; 3];
+    for i in (0..3).rev() {
+        let known: f64 = (i + 1..3).map(|j| rows[i][j] * found[j]).sum();
+        found[i] = (rows[i][3] - known) / rows[i][i];
+    }
+    found
 }
 
 #[cfg(test)]
@@ -87,5 +129,26 @@ mod tests {
         assert_eq!(of(x, [2.0, 0.0, 0.0, 3.0], y), Solution::None);
         assert_eq!(of([0.0; 4], [0.0; 4], [0.0; 4]), Solution::Space);
         assert_eq!(of([0.0; 4], [0.0, 0.0, 0.0, 1e-300], [0.0; 4]), Solution::None);
+    }
+
+    #[test]
+    fn large_small_and_nearly_dependent_numbers() {
+        let near = |solution: Solution, expected: Row3| match solution {
+            Solution::One(found) => {
+                assert!(
+                    (0..3).all(|k| (found[k] / expected[k] - 1.0).abs() < 1e-6),
+                    "{found:?} {expected:?}"
+                );
+            }
+            other => panic!("{other:?}"),
+        };
+        let large = [[1e308, 1e308, 1e308, 1e308], [1.0, -1.0, 1.0, 3.0], [0.0, 0.0, 1.0, 7.0]];
+        near(solve_system(&large), [-5.0, -1.0, 7.0]);
+        let small = [[1e-300, 0.0, 0.0, 2e-300], [0.0, 1e200, 1e200, 5e200], [0.0, 1.0, -1.0, 1.0]];
+        near(solve_system(&small), [2.0, 3.0, 2.0]);
+        let thin =
+            [[1.0, 1.0, 1.0, 6.0], [1.0, 1.0 + 1e-7, 1.0, 6.0 + 2e-7], [1.0, 1.0, 1.0 + 1e-7, 6.0 + 3e-7]];
+        near(solve_system(&thin), [1.0, 2.0, 3.0]);
+        assert_eq!(solve_system(&[[0.0; 4]; 3].map(|_| [f64::MIN_POSITIVE, 0.0, 0.0, 0.0])), Solution::Plane);
     }
 }
