@@ -96,9 +96,11 @@ fn ranges_of_indices_have_profiles_of_their_own() {
     let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
     assert_eq!(bytes("direct.png"), bytes("painted.png"));
     for (words, part) in [
-        ("render house.dat --ranges surfaces", "expected"),
+        ("render house.dat --ranges surfaces", "house.dat:"),
         ("render patches.dat --ranges objects --colors 4 --json", "4 colours are too few for 2 ranges"),
         ("lut two.btm --profile green.lut --profile clay.lut", "the editor has one profile"),
+        ("render patches.dat --highlight 2 --json", "a cosine lies between -1 and 1"),
+        ("render patches.dat --highlight nan --json", "a cosine lies between -1 and 1"),
     ] {
         let output = classic(folder.path(), words, "");
         let told = String::from_utf8_lossy(&output.stderr).into_owned();

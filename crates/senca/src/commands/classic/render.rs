@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
 
     /// After Phong, shades only polygons that can have a cosine from this one on after Phong, and the others,
     /// which have no highlight, after Gouraud
-    #[arg(long, value_name = "COSINE", value_parser = clap::value_parser!(f64))]
+    #[arg(long, value_name = "COSINE", value_parser = cosine)]
     highlight: Option<f64>,
 
     /// What has a range of colour indices of its own, so that it can have a profile of its own
@@ -135,6 +135,11 @@ enum Build {
     Tables,
     /// Polygon by polygon
     AsRead,
+}
+
+fn cosine(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value: &f64| (-1.0..=1.0).contains(value));
+    value.ok_or_else(|| "a cosine lies between -1 and 1".to_owned())
 }
 
 fn yes_or_no(text: &str) -> Result<bool, String> {
