@@ -23,6 +23,7 @@ use smallvec::SmallVec;
 
 use crate::gather::Frame;
 use crate::hierarchy::cluster::Clusters;
+use crate::hierarchy::facet::lambert_share;
 use crate::{ElementMesh, NONE, Occluders, PatchPolygon};
 
 /// Directions in which a place looks for fronts.
@@ -46,7 +47,8 @@ type Piece = SmallVec<[DVec3; 6]>;
 /// The open part of an element.
 #[derive(Clone, Debug)]
 pub(crate) struct OpenPart {
-    /// Triangles, each with the share of the part that ends with it.
+    pieces: Vec<Piece>,
+    /// Triangles of the pieces, each with the share of the part that ends with it.
     triangles: Vec<([DVec3; 3], f64)>,
     /// Its shape, where that is a convex polygon of up to four corners.
     pub(crate) shape: Option<PatchPolygon>,
@@ -248,7 +250,13 @@ impl OpenPart {
                 triangles.push((triangle, sum));
             }
         }
-        Self { triangles, shape: outline(pieces, normal, area) }
+        let shape = outline(pieces, normal, area);
+        Self { pieces: pieces.iter().map(|&piece| piece.clone()).collect(), triangles, shape }
+    }
+
+    /// Share of the hemisphere of a point in front that this takes up, weighted by the cosine.
+    pub(crate) fn share_at(&self, point: DVec3, normal: DVec3) -> f64 {
+        self.pieces.iter().map(|piece| lambert_share(point, normal, piece)).sum()
     }
 
     /// A place, evenly by area.

@@ -5,12 +5,15 @@ use std::f64::consts::{PI, TAU};
 use senca_math::glam::DVec3;
 use smallvec::SmallVec;
 
-use crate::open_parts::OpenParts;
+use crate::open_parts::{OpenPart, OpenParts};
 use crate::{ElementMesh, PatchPolygon};
 
 /// From this many radii on a polygon counts as small: the share of what is seen of it is off by less
 /// than one hundredth of itself.
 const FAR: f64 = 10.0;
+
+/// Up to this many times the sum of their radii two elements are near each other.
+const NEAR: f64 = 1.5;
 
 /// Places of the rule of Gauss with two points per axis, in the unit square.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
@@ -78,6 +81,11 @@ impl Facet {
         self.has_in_front(other.shape.corners()) && other.has_in_front(self.shape.corners())
     }
 
+    /// Whether the two are near each other for their size, or touch.
+    pub(super) fn is_near(&self, other: &Self) -> bool {
+        self.center.distance(other.center) < NEAR * (self.radius + other.radius)
+    }
+
     /// Whether any of the places is in front.
     pub(super) fn has_in_front(&self, places: &[DVec3]) -> bool {
         let limit = 1e-9 * self.radius;
@@ -85,7 +93,7 @@ impl Facet {
     }
 
     /// Places that stand for all of it, with equal weights.
-    fn places(&self) -> SmallVec<[DVec3; 4]> {
+    pub(super) fn places(&self) -> SmallVec<[DVec3; 4]> {
         match *self.shape.corners() {
             [a, b, c] => {
                 let at = |p: DVec3, q: DVec3, r: DVec3| (4.0 * p + q + r) / 6.0;
@@ -104,30 +112,40 @@ impl Facet {
     /// Share of the hemisphere of a point that this takes up, weighted by the cosine at the point:
     /// the form factor of the point to this (course text, section 4.2, equation 4.8).
     pub(crate) fn share_at(&self, point: DVec3, normal: DVec3) -> f64 {
+        self.share_by(point, normal, || self.open * lambert_share(point, normal, self.shape.corners()))
+    }
+
+    /// The same with `part` for what of it is open.
+    pub(super) fn share_of_part_at(&self, part: Option<&OpenPart>, point: DVec3, normal: DVec3) -> f64 {
+        match part {
+            Some(part) if self.open < 1.0 => self.share_by(point, normal, || part.share_at(point, normal)),
+            _ => self.share_at(point, normal),
+        }
+    }
+
+    fn share_by(&self, point: DVec3, normal: DVec3, near: impl FnOnce() -> f64) -> f64 {
         let way = self.center - point;
         let squared = way.length_squared();
         if squared > (FAR * self.radius).powi(2) {
             let cosines = normal.dot(way).max(0.0) * self.normal.dot(-way).max(0.0);
             return cosines * self.area / (PI * squared * squared);
         }
-        if self.normal.dot(way) >= 0.0 {
-            return 0.0;
-        }
-        self.open * lambert_share(point, normal, self.shape.corners())
+        if self.normal.dot(way) >= 0.0 { 0.0 } else { near() }
     }
 
     /// Mean over this of the share that `source` takes up, with how much it varies.
+    #[cfg(test)]
     pub(super) fn share_of(&self, source: &Self) -> Share {
-        self.share_at_all(&self.places(), source)
+        self.share_at_all(&self.places(), |place| source.share_at(place, self.normal))
     }
 
-    /// The same with `places`, of equal weight, for those of this.
-    pub(super) fn share_at_all(&self, places: &[DVec3], source: &Self) -> Share {
+    /// Mean over this of `share_at` at `places`, which have equal weight, with how much it varies.
+    pub(super) fn share_at_all(&self, places: &[DVec3], share_at: impl Fn(DVec3) -> f64) -> Share {
         // The middle tells apart what is the same at all places for the sake of symmetry.
-        let middle = source.share_at(self.center, self.normal);
+        let middle = share_at(self.center);
         let (mut sum, mut least, mut most) = (0.0, middle, middle);
         for &place in places {
-            let share = source.share_at(place, self.normal);
+            let share = share_at(place);
             (sum, least, most) = (sum + share, least.min(share), most.max(share));
         }
         Share { mean: sum / places.len() as f64, spread: TO_THE_BORDER * (most - least) }

@@ -37,6 +37,12 @@ pub(super) enum Verdict {
 /// Rays of weak, fair and strong links, and of those that cannot be divided although they should.
 const RAYS: [u16; 4] = [4, 8, 16, 48];
 
+/// What parts of a source may differ by, as a share of the light at a receiver, however small that is.
+const BLUR: f64 = 0.05;
+
+/// How far from its corners, as a share of the way to its middle, an element is looked at there.
+const INSET: f64 = 0.1;
+
 /// Links that carry less than this share of the threshold are weak.
 const WEAK: f64 = 0.1;
 
@@ -81,10 +87,7 @@ impl Oracle<'_> {
     }
 
     fn facet(&self, node: Node) -> Option<Facet> {
-        if let Some(lamp) = node.as_lamp() {
-            return Some(self.sight.lamps[lamp as usize]);
-        }
-        node.as_element().map(|element| Facet::of_open(self.sight.mesh, self.sight.open, element))
+        self.sight.facet(node)
     }
 
     /// Two elements, or a lamp and an element.
@@ -98,7 +101,7 @@ impl Oracle<'_> {
             if receiver.area <= 0.0 || source.area <= 0.0 || !receiver.can_see(&source) {
                 return Verdict::Drop;
             }
-            let share = self.share_of(link.receiver, &receiver, &source);
+            let share = self.share_of(link, &receiver, &source);
             link.factor = share.mean as f32;
             // All places may be below a horizon that others are above of.
             let unseen = if share.mean > 0.0 { 0.0 } else { at_most(&receiver, &source) };
@@ -114,7 +117,13 @@ impl Oracle<'_> {
         let by_receiver = bright * (spread * open.max(0.1) + factor * unsure);
         let by_source = self.variation(link.source) * factor * open.max(unsure);
         if receiver.area * (by_receiver + by_source) <= threshold {
-            return Verdict::Keep;
+            let mixed = bright * factor * open.min(1.0 - open);
+            let blurred = by_source + mixed > BLUR * self.light_at(link.receiver);
+            let has_parts = link
+                .source
+                .as_element()
+                .is_some_and(|source| !self.sight.mesh.elements()[source as usize].is_leaf());
+            return if blurred && has_parts { Verdict::SplitSource } else { Verdict::Keep };
         }
         // Parts of a source would share the error out to links that look good enough one by one.
         let shadow = factor * unsure > spread;
@@ -127,13 +136,29 @@ impl Oracle<'_> {
         verdict
     }
 
-    /// Mean over the open part of the receiver of the share that the source takes up.
-    fn share_of(&self, node: Node, receiver: &Facet, source: &Facet) -> Share {
-        let Sight { mesh, open, .. } = self.sight;
-        match node.as_element().and_then(|element| open.get(mesh, element)) {
-            Some(part) if part.shape.is_none() => receiver.share_at_all(&part.places(), source),
-            _ => receiver.share_of(source),
+    /// Light that is known to arrive at an element; endless while none is.
+    fn light_at(&self, node: Node) -> f64 {
+        let number = node.index();
+        let light = f64::from(brightness(self.state.incident[number] + self.state.lamp_light[number]));
+        if light > 0.0 { light } else { f64::INFINITY }
+    }
+
+    /// Mean over the open part of the receiver of the share that the source's takes up.
+    fn share_of(&self, link: &Link, receiver: &Facet, source: &Facet) -> Share {
+        let [to, from] = [link.receiver, link.source].map(|node| self.sight.part(node));
+        let share_at = |place: DVec3| source.share_of_part_at(from, place, receiver.normal);
+        let share = match to {
+            Some(part) if part.shape.is_none() => receiver.share_at_all(&part.places(), share_at),
+            _ => receiver.share_at_all(&receiver.places(), share_at),
+        };
+        if !receiver.is_near(source) {
+            return share;
         }
+        // Where the two touch, a corner may see much of what no place inside does.
+        let corners = receiver.shape.corners().iter();
+        let shares = corners.map(|corner| share_at(corner.lerp(receiver.center, INSET)));
+        let most = shares.fold(0.0, f64::max);
+        Share { spread: share.spread.max(most - share.mean), ..share }
     }
 
     /// A cluster with itself.

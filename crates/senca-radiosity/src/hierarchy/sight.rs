@@ -5,7 +5,7 @@ use senca_math::glam::{DVec3, DVec4};
 use super::cluster::Clusters;
 use super::facet::Facet;
 use super::node::Node;
-use crate::open_parts::OpenParts;
+use crate::open_parts::{OpenPart, OpenParts};
 use crate::{ElementMesh, Occluders};
 
 /// Fractional parts of the multiples of these four spread evenly over the unit cube of four
@@ -50,6 +50,19 @@ impl Sight<'_> {
             }
         }
         if all > 0.0 { seen / all } else { 0.0 }
+    }
+
+    /// The open part of an element that is cut.
+    pub(super) fn part(&self, node: Node) -> Option<&OpenPart> {
+        node.as_element().and_then(|element| self.open.get(self.mesh, element))
+    }
+
+    /// An element or a lamp.
+    pub(super) fn facet(&self, node: Node) -> Option<Facet> {
+        if let Some(lamp) = node.as_lamp() {
+            return Some(self.lamps[lamp as usize]);
+        }
+        node.as_element().map(|element| Facet::of_open(self.mesh, self.open, element))
     }
 
     /// Mean over pairs of places on a cluster of cosines over squared distance and pi, where they see
