@@ -35,6 +35,9 @@ const GAP: f64 = 1e-5;
 /// Segments that an element is cut along at most; where there are more, it is cut in equal cells.
 const MOST_CUTS: usize = 6;
 
+/// Pieces that are looked at one by one at most.
+const FEW: usize = 12;
+
 /// Cells along each edge.
 const CELLS: u32 = 8;
 
@@ -63,7 +66,9 @@ pub(crate) struct OpenParts {
     known: usize,
     /// Where other polygons are in contact with an element.
     contacts: HashMap<u32, Vec<Segment>>,
-    parts: HashMap<u32, OpenPart>,
+    parts: Vec<OpenPart>,
+    /// Of each element, the number of its part, or [`NONE`].
+    part_of: Vec<u32>,
 }
 
 /// What is asked of the surroundings.
@@ -90,7 +95,8 @@ impl OpenParts {
     /// The open part of an element, if that is neither all nor nothing of it.
     pub(crate) fn get(&self, mesh: &ElementMesh, element: u32) -> Option<&OpenPart> {
         let is_cut = mesh.elements()[element as usize].open < 1.0;
-        if is_cut { self.parts.get(&element) } else { None }
+        let number = if is_cut { *self.part_of.get(element as usize)? } else { NONE };
+        self.parts.get(number as usize)
     }
 
     /// A place on the open part of an element, evenly by area.
@@ -117,7 +123,8 @@ impl OpenParts {
                 if !found.contacts.is_empty() {
                     self.contacts.insert(element, found.contacts);
                 }
-                self.parts.extend(found.part.map(|part| (element, part)));
+                self.part_of.push(if found.part.is_some() { self.parts.len() as u32 } else { NONE });
+                self.parts.extend(found.part);
             }
             self.known = end;
         }
@@ -252,6 +259,11 @@ impl OpenPart {
         }
         let shape = outline(pieces, normal, area);
         Self { pieces: pieces.iter().map(|&piece| piece.clone()).collect(), triangles, shape }
+    }
+
+    /// Whether its pieces are few enough to look at one by one.
+    pub(crate) fn is_simple(&self) -> bool {
+        self.pieces.len() <= FEW
     }
 
     /// Share of the hemisphere of a point in front that this takes up, weighted by the cosine.

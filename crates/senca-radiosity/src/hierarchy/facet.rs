@@ -118,7 +118,9 @@ impl Facet {
     /// The same with `part` for what of it is open.
     pub(super) fn share_of_part_at(&self, part: Option<&OpenPart>, point: DVec3, normal: DVec3) -> f64 {
         match part {
-            Some(part) if self.open < 1.0 => self.share_by(point, normal, || part.share_at(point, normal)),
+            Some(part) if self.open < 1.0 && part.is_simple() => {
+                self.share_by(point, normal, || part.share_at(point, normal))
+            }
             _ => self.share_at(point, normal),
         }
     }
