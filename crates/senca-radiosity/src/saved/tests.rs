@@ -104,6 +104,44 @@ proptest! {
     }
 }
 
+/// What the fuzz target `saved_light` does, on its seeds with some thousand changes that are always the same.
+#[test]
+fn changed_seeds_of_the_fuzzer_end_in_an_error_or_a_solution() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/saved_light");
+    let seeds: Vec<Vec<u8>> = std::fs::read_dir(folder)
+        .expect("the seeds")
+        .map(|entry| std::fs::read(entry.expect("an entry").path()).expect("a seed"))
+        .collect();
+    assert!(!seeds.is_empty() && seeds.iter().all(|seed| Solution::load(seed, None).is_ok()));
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below.max(1)
+    };
+    let mut loaded = 0;
+    for round in 0..4000 {
+        let bytes = forged(seeds[round % seeds.len()].clone(), |bytes| {
+            for _ in 0..=next(3) {
+                let at = 12 + next(bytes.len() - 12);
+                match next(4) {
+                    0 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][next(5)],
+                    1 => bytes[at] ^= 1 << next(8),
+                    2 => drop(bytes.remove(at)),
+                    _ => bytes.insert(at, next(256) as u8),
+                }
+            }
+        });
+        if let Ok(solution) = Solution::load(&bytes, None) {
+            loaded += 1;
+            assert_eq!(solution.incident.len(), solution.mesh.elements().len());
+            let again = Solution::load(&solution.save(7), Some(7)).expect("what was saved");
+            assert_eq!(again.incident, solution.incident);
+            assert_eq!(again.mesh.elements().len(), solution.mesh.elements().len());
+        }
+    }
+    assert!(loaded > 100, "{loaded}");
+}
+
 #[test]
 fn the_fingerprint_knows_shapes_and_materials_but_no_cameras() {
     let base = scene();
