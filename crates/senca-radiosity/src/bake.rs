@@ -5,12 +5,14 @@
 //! - [`bake_lightmap`]: the polygons of the scene as they are, with one picture that holds what each place
 //!   shows, textures included, on coordinates of its own.
 //!
+//! - [`bake_light_picture`]: the light alone, on the same coordinates, for programs that multiply.
+//!
 //! Materials are unlit; colours above white are cut off, since that is what viewers would do.
 
 mod atlas;
 
 use senca_math::glam::{DVec2, DVec3, Vec2, Vec4};
-use senca_math::{LinearRgb, Srgb8};
+use senca_math::{Image, LinearRgb, Srgb8};
 use senca_scene::{
     Faces, Filter, Geometry, ImageData, ImageId, Material, MaterialId, Mesh, Node, Phong, Reflection, Scene,
     Shape, Surface, Texture, TextureId, TextureImage, TextureRef, Wrap,
@@ -76,6 +78,26 @@ pub fn bake_lightmap(
     baked.roots.push(root);
     crate::display::add_cameras(scene, &mut baked);
     Ok(baked)
+}
+
+/// The light alone, what a white matt surface would show, on the coordinates of [`bake_lightmap`] with the same
+/// side: linear, as bright as it is.
+///
+/// # Errors
+/// As [`bake_lightmap`].
+pub fn bake_light_picture(field: &LightField<'_>, side: u32) -> Result<Image, RadiosityError> {
+    let refuse = |expected| RadiosityError::Setting { name: "lightmap side", value: side.into(), expected };
+    if !LIGHTMAP_SIDES.contains(&side) {
+        return Err(refuse("from 16 to 16384 texels"));
+    }
+    let atlas = Atlas::of(field.mesh(), side).ok_or_else(|| refuse("larger: the polygons find no room"))?;
+    // The leaf is found down the polygon's tree, without a look at what is around.
+    let texels = atlas.paint(field.mesh(), &|polygon, point| {
+        let leaf = crate::gather::leaf_at(field.mesh(), polygon, point);
+        field.at(leaf, point)
+    });
+    let pixels = texels.iter().map(|light| [light.r, light.g, light.b, 1.0]).collect();
+    Image::from_pixels(side, side, pixels).ok_or_else(|| refuse("that of the texels"))
 }
 
 /// Pictures that no material shows are not written.

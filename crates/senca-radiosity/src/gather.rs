@@ -306,7 +306,7 @@ impl Frame {
 }
 
 /// The leaf of a polygon that holds a place, or comes nearest to it.
-fn leaf_at(mesh: &ElementMesh, polygon: u32, place: DVec3) -> u32 {
+pub(crate) fn leaf_at(mesh: &ElementMesh, polygon: u32, place: DVec3) -> u32 {
     let mut element = polygon;
     loop {
         let whole = &mesh.elements()[element as usize];

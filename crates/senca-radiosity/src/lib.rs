@@ -25,7 +25,7 @@ mod saved;
 mod solution;
 pub mod system;
 
-pub use bake::{bake_lightmap, bake_vertex_colors};
+pub use bake::{bake_light_picture, bake_lightmap, bake_vertex_colors};
 pub use direct::{DirectLight, DirectSample, DirectSettings};
 pub use error::RadiosityError;
 pub use gather::{Gather, GatherSettings, regather_reflected};

@@ -71,6 +71,12 @@ pub(crate) fn bounds_of_lamps(scene: &Scene) -> Aabb {
     Aabb::of_points(seen_lamps(scene).iter().flat_map(place))
 }
 
+/// What the brightest of the area lights that are seen shows, its largest channel; 0 without any.
+pub(crate) fn brightest_lamp(scene: &Scene) -> f32 {
+    let shows = |lamp: Seen| lamp.radiance(&scene.lights[lamp.light.index()], None).max_component();
+    seen_lamps(scene).into_iter().map(shows).fold(0.0, f32::max)
+}
+
 /// Lets the area lights of `scene` be seen in it.
 pub(crate) fn show_lamps(scene: &mut Scene, view: &View) {
     let eye = match view.kind {

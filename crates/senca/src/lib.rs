@@ -31,8 +31,9 @@ mod traced;
 pub use error::Error;
 pub use false_color::false_color;
 pub use lighting::{
-    Baking, ColorEncoding, ComputedLight, Display, LuxPlaces, OnRound, RadiositySettings, Show, Solver,
-    bake_light, beyond_white, compute_light, measure_lux, scene_light_fingerprint, show_light,
+    Baking, BeyondWhite, ColorEncoding, ComputedLight, Display, LuxPlaces, OnRound, RadiositySettings, Show,
+    Solver, bake_light, bake_light_picture, beyond_white, compute_light, measure_lux,
+    scene_light_fingerprint, show_light,
 };
 pub use line_drawing::render_svg;
 pub use prepare::{Prepared, prepare};

@@ -9,7 +9,9 @@ mod solve;
 mod tests;
 
 pub use face::LuxPlaces;
-pub use measure::{Baking, ColorEncoding, bake_light, beyond_white, measure_lux};
+pub use measure::{
+    Baking, BeyondWhite, ColorEncoding, bake_light, bake_light_picture, beyond_white, measure_lux,
+};
 pub use settings::{Display, RadiositySettings, Show, Solver};
 pub use show::show_light;
 pub use solve::{ComputedLight, OnRound, compute_light, scene_light_fingerprint};

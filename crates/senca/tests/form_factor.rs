@@ -54,6 +54,26 @@ fn pairs_are_told_by_every_method_with_the_exact_value() {
 }
 
 #[test]
+fn spheres_are_near_their_formulas() {
+    // Of the point below a sphere's middle, (r / d)^2; of the disc by the share of the sphere's directions.
+    for (arguments, known) in [
+        (["patch-sphere", "1", "2", "0.0001"], 0.25),
+        (["disc-sphere", "1", "0.5", "2"], 0.052_786_404_500),
+        (["spheres", "1", "0.5", "2"], 0.017_147_165_006),
+        (["patch-sphere", "1", "2", "100"], 0.0),
+    ] {
+        let report = json(&[&arguments[..], &["--method", "exact"]].concat());
+        let exact = report["exact"].as_f64().expect("a number");
+        assert!(known == 0.0 || (exact / known - 1.0).abs() < 1e-9, "{arguments:?}: {exact}");
+        let error = report["methods"][0]["relative_error"].as_f64().expect("a number");
+        assert!(error.abs() < 2e-2, "{arguments:?}: {error}");
+    }
+    let output = run_in(&repository(), &["form-factor", "spheres", "1", "1", "1.5"]);
+    assert_eq!(output.status.code(), Some(2), "{}", told(&output));
+    assert!(told(&output).contains("one is in the other"), "{}", told(&output));
+}
+
+#[test]
 fn discs_are_near_their_formula() {
     let report = json(&["disc", "1", "1", "1", "--method", "exact"]);
     let row = &report["methods"][0];

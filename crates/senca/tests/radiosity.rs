@@ -111,7 +111,16 @@ fn baked_models_can_be_read_and_drawn() {
     succeeds(folder, &format!("bake room.toml -o map.glb {coarse} --lightmap 64"));
     let bright = run(folder, &format!("bake room.toml -o auto.glb {coarse} --exposure 6"));
     assert!(bright.status.success() && told(&bright).contains("brighter than white"), "{}", told(&bright));
-    for name in ["colors.glb", "encoded.glb", "map.glb", "auto.glb"] {
+    let light = format!("bake room.toml -o lit.glb {coarse} --lightmap 64 --light-picture");
+    let told_scale = told(&run(folder, &format!("{light} light.png --light-scale 0.25")));
+    assert!(told_scale.contains("light.png: 8 bits, sRGB of light / 0.25"), "{told_scale}");
+    assert!(told_scale.contains("is cut off"), "{told_scale}");
+    let told_whole = told(&run(folder, &format!("{light} light.png")));
+    assert!(told_whole.contains("sRGB of light / ") && !told_whole.contains("up to"), "{told_whole}");
+    succeeds(folder, &format!("{light} light.exr"));
+    let refused = run(folder, &format!("{light} light.txt"));
+    assert_eq!(refused.status.code(), Some(2), "{}", told(&refused));
+    for name in ["colors.glb", "encoded.glb", "map.glb", "auto.glb", "lit.glb"] {
         let info = succeeds(folder, &format!("info {name} --json"));
         let info: serde_json::Value = serde_json::from_str(&info).expect("JSON");
         assert!(info["triangles"].as_u64().is_some_and(|n| n >= 24), "{name}: {info}");

@@ -2,18 +2,18 @@
 
 use std::borrow::Cow;
 
-use senca_math::Control;
 use senca_math::color::srgb_from_linear;
 use senca_math::glam::Vec4;
+use senca_math::{Control, Image};
 use senca_radiosity::display::{ElementFinder, Interpolation, LightField};
 use senca_radiosity::{
-    DirectLight, Gather, GatherSettings, LuxReport, Occluders, RadiosityError, Solution, bake_lightmap,
-    bake_vertex_colors,
+    DirectLight, Gather, GatherSettings, LuxReport, Occluders, RadiosityError, Solution,
+    bake_light_picture as paint_light, bake_lightmap, bake_vertex_colors,
 };
 use senca_scene::{Scene, Shape};
 
 use super::{Display, LuxPlaces};
-use crate::lamps::bake_lamps;
+use crate::lamps::{bake_lamps, brightest_lamp};
 use crate::prepare::{posed, prepare};
 use crate::traced::on_threads;
 use crate::{Error, Settings};
@@ -78,6 +78,17 @@ pub fn bake_light(
     })?
 }
 
+/// The light alone, what a white matt surface would show, as a linear picture on the coordinates of a model
+/// with a lightmap of this `side`, in texels.
+///
+/// # Errors
+/// See [`Error`].
+pub fn bake_light_picture(solution: &Solution, settings: &Settings, side: u32) -> Result<Image, Error> {
+    let exposed = solution.exposed(settings.radiosity.exposure_factor());
+    let field = LightField::new(&exposed.mesh, exposed.incident.clone(), Interpolation::Smooth);
+    on_threads(settings.drawing.threads, || Ok(paint_light(&field, side)?))?
+}
+
 /// Rays for reflected light at each place that is measured.
 const LUX_RAYS: u32 = 512;
 
@@ -108,20 +119,37 @@ fn encode_colors(scene: &mut Scene) {
     }
 }
 
-/// Share of the area that shows more than white in a model, emitters left aside, and how many stops darker it
-/// would have to be for a fiftieth of that area to.
+/// What of a model is brighter than white, and cut off there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BeyondWhite {
+    /// Share of the area that is, emitters left aside, in [0, 1].
+    pub share: f64,
+    /// How many stops darker it would have to be for a thousandth of that area to be.
+    pub stops: f64,
+    /// What the brightest emitter or area light shows, in whites; 0 without any.
+    pub emitters: f64,
+}
+
+/// What is brighter than white in a model of `scene` with the light of `solution`, brightened by `exposure`.
 #[must_use]
-pub fn beyond_white(solution: &Solution, exposure: f32) -> (f64, f64) {
+pub fn beyond_white(scene: &Scene, solution: &Solution, exposure: f32) -> BeyondWhite {
+    let shown = solution.mesh.surfaces().iter().map(|surface| surface.emission.max_component());
+    let emitters = exposure * shown.fold(brightest_lamp(scene), f32::max);
+    let (share, stops) = reflected_beyond_white(solution, exposure);
+    BeyondWhite { share, stops, emitters: emitters.into() }
+}
+
+fn reflected_beyond_white(solution: &Solution, exposure: f32) -> (f64, f64) {
     let mesh = &solution.mesh;
     let of = |leaf: u32| {
         let reflected = mesh.surface(leaf).reflectance * solution.incident[leaf as usize] * exposure;
-        (f64::from(reflected.max_component()), mesh.elements()[leaf as usize].area)
+        (f64::from(reflected.max_component()), mesh.elements()[leaf as usize].open_area())
     };
     let mut leaves: Vec<(f64, f64)> = mesh.leaves().map(of).collect();
     leaves.sort_by(|a, b| b.0.total_cmp(&a.0));
     let all: f64 = leaves.iter().map(|leaf| leaf.1).sum();
     let bright: f64 = leaves.iter().filter(|leaf| leaf.0 > 1.0).map(|leaf| leaf.1).sum();
-    let mut left = 0.02 * all;
+    let mut left = 0.001 * all;
     let edge = leaves.iter().find(|leaf| {
         left -= leaf.1;
         left < 0.0
