@@ -71,14 +71,11 @@ impl Mixing {
     /// Shares of the steps' changes that come nearest to the last change, in the sum of squares.
     fn shares(&self, change: &[Vec4], weights: &[f32]) -> Vec<Vec4> {
         let n = self.steps.len();
-        let mut products = vec![vec![[0.0; 3]; n]; n];
-        let mut wanted = vec![[0.0; 3]; n];
-        for i in 0..n {
-            wanted[i] = product(&self.steps[i].change, change, weights);
-            for j in 0..=i {
-                products[i][j] = product(&self.steps[i].change, &self.steps[j].change, weights);
-            }
-        }
+        let with = |step: &Step, other: &[Vec4]| product(&step.change, other, weights);
+        let wanted: Vec<[f64; 3]> = self.steps.iter().map(|step| with(step, change)).collect();
+        let row =
+            |i: usize| self.steps[..=i].iter().map(|other| with(&self.steps[i], &other.change)).collect();
+        let products: Vec<Vec<[f64; 3]>> = (0..n).map(row).collect();
         let mut shares = vec![Vec4::ZERO; n];
         for channel in 0..3 {
             let at = |i: usize, j: usize| products[i.max(j)][i.min(j)][channel];

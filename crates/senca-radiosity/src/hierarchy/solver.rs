@@ -33,6 +33,9 @@ const STILL: f64 = 1e-3;
 /// Where less of the light is kept or lost at each exchange, there is no end to it that could be foreseen.
 const DIM: f64 = 1e-4;
 
+/// Surfaces that keep less than the inverse of this are bright.
+const BRIGHT: f64 = 5.0;
+
 /// Elements that one task of a thread sums.
 const CHUNK: usize = 4096;
 
@@ -304,7 +307,10 @@ impl<'a> Solver<'a> {
     /// Light goes to and fro until little changes.
     fn exchange(&mut self, tolerance: f64) {
         (self.report.converged, self.settled) = (false, false);
-        let mut mixing = Mixing::new(if self.least_kept() > DIM { self.settings.remembered } else { 0 });
+        let kept = self.least_kept();
+        let mut mixing = Mixing::new(if kept > DIM { self.settings.remembered } else { 0 });
+        // Where little is kept, what still changes is a small part of what is yet to come.
+        let change_tolerance = tolerance * (BRIGHT * kept).clamp(DIM, 1.0);
         let weights = self.leaf_areas();
         for _ in 0..self.settings.max_iterations {
             if self.control.is_cancelled() {
@@ -325,7 +331,7 @@ impl<'a> Solver<'a> {
             }
             // The brightest may be far brighter than what it lights, so power has to agree too. Links that
             // are coarse yet may keep it from that however long light goes to and fro.
-            if self.report.residual <= tolerance {
+            if self.report.residual <= change_tolerance {
                 self.report.converged = self.energy_error() <= tolerance;
                 self.settled = self.report.converged || self.report.residual <= STILL * tolerance;
             }
