@@ -122,6 +122,29 @@ fn the_shown_scene_has_no_cracks_and_all_of_the_area() {
     }
 }
 
+/// Course text, section 4.1: central projection does not keep ratios. Of an edge from depth 1 to depth 3 the
+/// middle of the picture shows the place at a quarter, so light that grows evenly is a quarter there, and
+/// not the half that interpolation in the picture between the edge's ends would give.
+#[test]
+fn light_is_interpolated_in_the_scene_and_not_in_the_picture() {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, -3.0], [-1.0, -3.0]].map(|[x, z]| DVec3::new(x, -1.0, z));
+    let mut mesh = ElementMesh::of_polygons(&[(&corners, LinearRgb::WHITE, LinearRgb::BLACK)]);
+    mesh.divide_to_size(0.3, 1 << 10).expect("few");
+    let along = |e: &crate::Element| LinearRgb::splat(((-1.0 - e.center.z) / 2.0) as f32);
+    let values = mesh.elements().iter().map(along).collect();
+    let field = LightField::new(&mesh, values, Interpolation::Smooth);
+    let frame = senca_math::world_from_look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y).expect("a frame");
+    let view = View::perspective(&frame, std::f64::consts::FRAC_PI_2, 1.0, 0.1, None).expect("a view");
+    // From -1 to 1 the picture has 600 rows; the edge's ends are at heights -1 and -1/3.
+    let ray = senca_trace::PrimaryRays::new(&view, 600, 600).through(300.0, 500.0);
+    let place = ray.origin + ray.direction * (-1.0 / ray.direction.y);
+    assert!((place.z + 1.5).abs() < 1e-9, "{place}");
+    let finder = ElementFinder::new(&mesh).expect("a finder");
+    let found = finder.find(0, 0, place, DVec3::Y).expect("the floor");
+    let light = field.at(found.element, found.point).r;
+    assert!((light - 0.25).abs() < 1e-5, "{light}");
+}
+
 /// Means of two pictures' columns agree: the pipeline and rays show the same.
 #[test]
 fn the_pipeline_and_rays_show_the_same_light() {
