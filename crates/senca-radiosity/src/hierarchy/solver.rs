@@ -489,12 +489,16 @@ fn doubled(light: Vec4) -> DVec3 {
 
 /// The largest change of a channel as a share of the largest value.
 fn change(before: &[Vec4], after: &[Vec4]) -> f64 {
-    let (mut most, mut largest) = (0.0f32, f32::MIN_POSITIVE);
-    for (&old, &new) in before.iter().zip(after) {
-        let step = brightness((new - old).abs());
-        // Written so that what is not a number is the largest of all.
-        most = if step <= most { most } else { step };
-        largest = largest.max(brightness(new));
-    }
+    // Written so that what is not a number is the largest of all.
+    let larger = |most: f32, step: f32| if step <= most { most } else { step };
+    let of_chunk = |(before, after): (&[Vec4], &[Vec4])| {
+        before.iter().zip(after).fold((0.0f32, f32::MIN_POSITIVE), |(most, largest), (&old, &new)| {
+            (larger(most, brightness((new - old).abs())), largest.max(brightness(new)))
+        })
+    };
+    let chunks: Vec<(f32, f32)> =
+        before.par_chunks(CHUNK).zip(after.par_chunks(CHUNK)).map(of_chunk).collect();
+    let join = |a: (f32, f32), b: (f32, f32)| (larger(a.0, b.0), a.1.max(b.1));
+    let (most, largest) = chunks.into_iter().fold((0.0, f32::MIN_POSITIVE), join);
     f64::from(most) / f64::from(largest)
 }
