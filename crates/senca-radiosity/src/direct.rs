@@ -209,10 +209,18 @@ impl DirectLight {
         samples.fold((DirectSample::default(), 0.0), join).0
     }
 
-    /// Light on an element of `mesh`.
+    /// Light on an element of `mesh`, on average over its open part.
     #[must_use]
     pub fn on_element(&self, occluders: &Occluders, mesh: &ElementMesh, element: u32) -> DirectSample {
-        self.on(occluders, &mesh.shape(element), mesh.normal(element))
+        let sample = self.on(occluders, &mesh.shape(element), mesh.normal(element));
+        let open = mesh.elements()[element as usize].open;
+        if open <= 0.0 || open >= 1.0 {
+            return sample;
+        }
+        // No lamp lights what is not open, so all of it falls on the rest.
+        let [mean, most] = [sample.mean * open.recip(), sample.most];
+        let mean = LinearRgb::new(mean.r.min(most.r), mean.g.min(most.g), mean.b.min(most.b));
+        DirectSample { mean, ..sample }
     }
 
     /// Light on some elements of `mesh`, in their order, by all threads of the current rayon pool.
