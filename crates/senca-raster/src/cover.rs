@@ -174,6 +174,8 @@ pub(crate) struct TileDraw<'a, 'b, const FAST: bool> {
     pub(crate) bounds: Bounds,
     /// Whether they are fewer than the tile has.
     pub(crate) partial: bool,
+    /// The triangle of the batch whose plane was put into the forms of the tile last, and its number there.
+    pub(crate) form: Option<(usize, u8)>,
     pub(crate) counts: FragmentCounts,
 }
 
@@ -226,6 +228,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     #[inline(always)]
     pub(crate) fn flush<S: Simd>(&mut self, simd: S) {
         self.batch.prepare(simd, self.pass, self.tile, &self.bounds, self.pass.slots.len());
+        self.form = None;
         for lane in 0..self.batch.len.min(LANES) {
             self.triangle(simd, lane);
         }
@@ -361,12 +364,17 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             return;
         }
         let at = (8 * top) as usize & 63;
+        if self.pass.touches.keeps_forms && self.cover_level(lane, u64::from(level) << at) {
+            return;
+        }
         let b = &*self.batch;
         let (low, high) = (f32x16::splat(simd, b.z_min[lane]), f32x16::splat(simd, b.z_max[lane]));
         let mut left = level;
         while left != 0 {
             let bit = left.trailing_zeros() as usize;
             left &= left - 1;
+            // Of a block kept as planes nothing is left.
+            self.buffer.formed &= !(1 << (at + bit));
             let (bx, by) = ((bit % 8) as i32, top + (bit / 8) as i32);
             let corner = [b.offset[0][lane] + 8 * bx, b.offset[1][lane] + 8 * by];
             let [fx, fy] = lanes_from(simd, corner.map(|c| c as f32));

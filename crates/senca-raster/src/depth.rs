@@ -5,6 +5,7 @@ use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 
 use crate::api::Compare;
 use crate::batch::Batch;
+use crate::block_depths::{Covered, DepthForm};
 use crate::cover::{LANE_FX, LANE_FY, TileDraw, along, row_of};
 
 /// Row pairs of a block.
@@ -56,7 +57,21 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (left + 8 * bx) as f32);
             let block = (8 * by + bx) as usize & 63;
             let is_full = full >> bx & 1 == 1;
-            let mut edges = edges_at(simd, &*self.batch, lane, lanes, [8 * bx, 8 * by + 2 * top]);
+            let first = [8 * bx, 8 * by + 2 * top];
+            if self.buffer.formed >> block & 1 == 1 {
+                if self.nearer_than_level(lane, block) {
+                    let pixels = if is_full {
+                        u64::MAX
+                    } else {
+                        self.inside_of_block(simd, lane, lanes, first, bottom - top) << (16 * top)
+                    };
+                    if self.cover_some(lane, block, pixels) {
+                        continue;
+                    }
+                }
+                self.buffer.unfold(simd, block);
+            }
+            let mut edges = edges_at(simd, &*self.batch, lane, lanes, first);
             let mut written = 0;
             for pair in top..=bottom {
                 let inside = if is_full {
@@ -81,6 +96,87 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
         self.counts.tested += u64::from(tested);
         self.counts.passed += u64::from(passed);
+    }
+
+    /// Whether a triangle is nearer, wherever it is, than the one depth that a block was cleared to.
+    #[inline(always)]
+    fn nearer_than_level(&self, lane: usize, block: usize) -> bool {
+        let b = &*self.batch;
+        let farthest = if self.pass.reversed { -b.z_min[lane] } else { b.z_max[lane] };
+        self.buffer.level >> block & 1 == 1 && farthest < self.buffer.farthest[block & 63]
+    }
+
+    /// Pixels inside a triangle, of `more` + 1 row pairs of a block from `first` on: sixteen of each pair.
+    #[inline(always)]
+    fn inside_of_block<S: Simd>(
+        &self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        [x, y]: [i32; 2],
+        more: i32,
+    ) -> u64 {
+        let mut edges = edges_at(simd, &*self.batch, lane, lanes, [x, y]);
+        let mut pixels = 0;
+        for pair in 0..=more.min(PAIRS as i32 - 1) {
+            pixels |= self.inside(simd, &edges, [x, y + 2 * pair]).to_bitmask() << (16 * pair);
+            for (k, edge) in edges.iter_mut().enumerate() {
+                *edge += i32x16::splat(simd, self.batch.edge_dy[k][lane].wrapping_mul(2));
+            }
+        }
+        pixels
+    }
+
+    /// Gives pixels of a block, all of which pass the depth test, the plane of a triangle; whether the block can
+    /// be kept that way.
+    #[inline(always)]
+    fn cover_some(&mut self, lane: usize, block: usize, pixels: u64) -> bool {
+        if pixels == 0 {
+            return true;
+        }
+        let Some(plane) = self.form(lane) else { return false };
+        match self.buffer.forms.cover_some(block, pixels, plane) {
+            Covered::TooMuch => return false,
+            Covered::Some => {}
+            Covered::All => self.buffer.level &= !(1 << block),
+        }
+        self.buffer.written |= 1 << block;
+        self.counts.tested += u64::from(pixels.count_ones());
+        self.counts.passed += u64::from(pixels.count_ones());
+        true
+    }
+
+    /// Gives `blocks`, which are farther away and wholly covered, the plane of a triangle, if it can be kept.
+    #[inline(always)]
+    pub(crate) fn cover_level(&mut self, lane: usize, blocks: u64) -> bool {
+        let Some(plane) = self.form(lane) else { return false };
+        let mut left = blocks;
+        while left != 0 {
+            self.buffer.forms.cover(left.trailing_zeros() as usize, plane);
+            left &= left - 1;
+        }
+        let pixels = 64 * u64::from(blocks.count_ones());
+        (self.counts.tested, self.counts.passed) = (self.counts.tested + pixels, self.counts.passed + pixels);
+        self.buffer.written |= blocks;
+        self.buffer.level &= !blocks;
+        self.buffer.formed |= blocks;
+        true
+    }
+
+    /// The number of a triangle's plane in the forms of the tile; `None` if there are too many.
+    #[inline(always)]
+    fn form(&mut self, lane: usize) -> Option<u8> {
+        if let Some((_, plane)) = self.form.filter(|(of, _)| *of == lane) {
+            return Some(plane);
+        }
+        let b = &*self.batch;
+        let plane = self.buffer.forms.add(DepthForm {
+            plane: [b.depth[0][lane], b.depth[1][lane], b.depth[2][lane]],
+            offset: [b.offset[0][lane] as f32, b.offset[1][lane] as f32],
+            range: [b.z_min[lane], b.z_max[lane]],
+        })?;
+        self.form = Some((lane, plane));
+        Some(plane)
     }
 
     /// The lanes where no edge is negative and that may be written.

@@ -47,6 +47,7 @@ mod assemble;
 mod batch;
 mod bin;
 mod blend;
+mod block_depths;
 pub mod clip;
 mod cover;
 mod depth;
@@ -71,6 +72,7 @@ pub use api::{
     Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading, State,
     StencilOp, StencilTest, StippleJoins, StrokeRule, TextureUnit, Viewport,
 };
+pub use block_depths::BlockDepths;
 pub use fearless_simd::{self as simd, Level as SimdLevel};
 pub use multisample::SAMPLES;
 pub use scanline::ScanlineRasterizer;

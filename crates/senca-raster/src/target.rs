@@ -1,6 +1,7 @@
 //! What is drawn into: views of colour, depth, stencil and identifier planes, and an owner of them.
 
 use crate::api::Rect;
+use crate::block_depths::BlockDepths;
 use crate::setup::Bounds;
 use senca_math::Image;
 use senca_math::conventions::{DEPTH_FAR, NO_ID};
@@ -75,6 +76,8 @@ pub struct Target<'a> {
     pub(crate) height: u32,
     pub(crate) color: Option<ColorPlane<'a>>,
     pub(crate) depth: Option<&'a mut [f32]>,
+    /// Depths kept in blocks, instead; only where [`crate::TiledRasterizer::draw_depths`] put them.
+    pub(crate) blocks: Option<&'a mut BlockDepths>,
     pub(crate) stencil: Option<&'a mut [u8]>,
     pub(crate) ids: Option<&'a mut [u32]>,
 }
@@ -107,7 +110,7 @@ impl<'a> Target<'a> {
         if width.max(height) > MAX_TARGET_SIDE {
             return Err(TargetError::TooLarge { width, height });
         }
-        Ok(Self { width, height, color: None, depth: None, stencil: None, ids: None })
+        Ok(Self { width, height, color: None, depth: None, blocks: None, stencil: None, ids: None })
     }
 
     /// A target that draws into a picture.
@@ -174,6 +177,7 @@ impl<'a> Target<'a> {
             height: rows.min(height - i * rows) as u32,
             color: color.as_mut().and_then(Iterator::next),
             depth: depth.as_mut().and_then(Iterator::next),
+            blocks: None,
             stencil: stencil.as_mut().and_then(Iterator::next),
             ids: ids.as_mut().and_then(Iterator::next),
         };
@@ -188,7 +192,7 @@ impl<'a> Target<'a> {
     /// Whether there is a depth plane.
     #[must_use]
     pub fn has_depth(&self) -> bool {
-        self.depth.is_some()
+        self.depth.is_some() || self.blocks.is_some()
     }
 
     /// Whether there is a stencil plane.

@@ -6,9 +6,12 @@
 
 use crate::api::LANES;
 use crate::bin::TILE;
+use crate::block_depths::{BandDepths, TileForms};
 use crate::cover::Pass;
 use crate::multisample;
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
+
+use fearless_simd::{Level, Simd, dispatch};
 
 /// Blocks up to which a tile is stored block by block instead of row by row.
 const FEW_BLOCKS: u32 = 8;
@@ -34,6 +37,8 @@ pub(crate) struct Band<'a> {
     pub(crate) height: usize,
     pub(crate) color: Option<ColorPlane<'a>>,
     pub(crate) depth: Option<&'a mut [f32]>,
+    /// Depths kept in blocks, instead.
+    pub(crate) blocks: Option<BandDepths<'a>>,
     pub(crate) stencil: Option<&'a mut [u8]>,
     pub(crate) ids: Option<&'a mut [u32]>,
 }
@@ -48,6 +53,7 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
         None => Vec::new(),
     };
     let mut depths = target.depth.as_deref_mut().map(|p| p.chunks_mut(step));
+    let mut blocks = target.blocks.as_deref_mut().map(|p| p.bands());
     let mut stencils = target.stencil.as_deref_mut().map(|p| p.chunks_mut(step));
     let mut ids = target.ids.as_deref_mut().map(|p| p.chunks_mut(step));
     (0..height.div_ceil(TILE))
@@ -57,6 +63,7 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
             height: TILE.min(height - row * TILE),
             color: colors.get_mut(row).and_then(Option::take),
             depth: depths.as_mut().and_then(Iterator::next),
+            blocks: blocks.as_mut().and_then(Iterator::next),
             stencil: stencils.as_mut().and_then(Iterator::next),
             ids: ids.as_mut().and_then(Iterator::next),
         })
@@ -77,6 +84,7 @@ pub(crate) fn band<'a>(target: &'a mut Target<'_>, row: usize) -> Band<'a> {
             ColorPlane::Rgba8(p) => ColorPlane::Rgba8(&mut p[range.clone()]),
         }),
         depth: target.depth.as_deref_mut().map(|p| &mut p[range.clone()]),
+        blocks: target.blocks.as_deref_mut().map(|p| p.band(row)),
         stencil: target.stencil.as_deref_mut().map(|p| &mut p[range.clone()]),
         ids: target.ids.as_deref_mut().map(|p| &mut p[range]),
     }
@@ -117,6 +125,8 @@ pub(crate) struct Touches {
     pub(crate) reversed: bool,
     /// Whether blocks are kept sample by sample; see [`crate::multisample`].
     pub(crate) samples: bool,
+    /// Whether depths stay planes where that is possible; see [`crate::block_depths`].
+    pub(crate) keeps_forms: bool,
 }
 
 /// The tile being drawn.
@@ -137,6 +147,10 @@ pub(crate) struct TileBuffer {
     pub(crate) written: u64,
     /// Those of them whose depths were cleared: unless written, all are [`Self::farthest`].
     pub(crate) level: u64,
+    /// Those of them whose depths are to be found in `forms`.
+    pub(crate) formed: u64,
+    /// Where the target keeps depths in blocks: what it has of this tile, once a block is present.
+    pub(crate) forms: Box<TileForms>,
 }
 
 impl Default for TileBuffer {
@@ -151,8 +165,15 @@ impl Default for TileBuffer {
             present: 0,
             written: 0,
             level: 0,
+            formed: 0,
+            forms: Box::default(),
         }
     }
+}
+
+/// The blocks whose bits are set.
+fn blocks_of(bits: u64) -> impl Iterator<Item = usize> {
+    (0..BLOCKS * BLOCKS).filter(move |block| bits >> block & 1 == 1)
 }
 
 /// A row of 8 pixels of block (`bx`, `by`) within a band; fewer at the right rim.
@@ -171,6 +192,12 @@ impl TileBuffer {
     #[inline(never)]
     pub(crate) fn fetch(&mut self, band: &Band<'_>, tile_x: usize, block: usize, touches: &Touches) {
         let clear = touches.clear;
+        if self.present == 0 {
+            self.open_forms(band, tile_x / TILE, touches);
+        }
+        if self.present >> block & 1 == 1 {
+            return;
+        }
         self.present |= 1 << block;
         self.farthest[block] = f32::INFINITY;
         match clear.and_then(|c| c.color) {
@@ -191,6 +218,11 @@ impl TileBuffer {
                 None => farthest_of(&self.depth[block], touches.reversed),
             };
         }
+        if let Some(depths) = &band.blocks {
+            let from = depths.values(tile_x / TILE, block);
+            self.depth[block].as_flattened_mut().copy_from_slice(from);
+            self.farthest[block] = farthest_of(&self.depth[block], touches.reversed);
+        }
         if let Some(plane) = &band.stencil {
             match clear.and_then(|c| c.stencil) {
                 Some(value) => fill(&mut self.stencil[block], value),
@@ -209,6 +241,39 @@ impl TileBuffer {
         if touches.samples {
             self.turn(band, block, touches, true);
         }
+    }
+
+    /// Where the target keeps depths in blocks: brings in all blocks of a tile but those that are kept as values.
+    fn open_forms(&mut self, band: &Band<'_>, tile: usize, touches: &Touches) {
+        let Some(depths) = &band.blocks else { return };
+        match touches.clear.and_then(|clear| clear.depth) {
+            Some(depth) => {
+                self.forms.clear(depth);
+                self.farthest = [if touches.reversed { -depth } else { depth }; BLOCKS * BLOCKS];
+                (self.present, self.level) = (u64::MAX, u64::MAX);
+            }
+            None => {
+                self.forms.copy_from(&depths.tiles[tile]);
+                self.present = !self.forms.valued;
+                for block in blocks_of(self.present) {
+                    self.farthest[block] = self.forms.farthest(block, touches.reversed);
+                }
+            }
+        }
+        self.formed = self.present;
+        if !touches.keeps_forms {
+            let simd = Level::baseline();
+            for block in blocks_of(self.present) {
+                dispatch!(simd, simd => self.unfold(simd, block));
+            }
+        }
+    }
+
+    /// Finds the depths of a block that is kept as planes.
+    #[inline(always)]
+    pub(crate) fn unfold<S: Simd>(&mut self, simd: S, block: usize) {
+        self.forms.values(simd, block, &mut self.depth[block % (BLOCKS * BLOCKS)]);
+        self.formed &= !(1 << block);
     }
 
     /// Does `turn` to every plane of a block that is there.
@@ -237,9 +302,8 @@ impl TileBuffer {
     /// Between two draws in the same tile: blocks are kept as the next one wants them, and what is known
     /// of their depths is found anew.
     pub(crate) fn pass_on(&mut self, band: &Band<'_>, before: &Pass<'_>, next: &Pass<'_>) {
-        let blocks = |bits: u64| (0..BLOCKS * BLOCKS).filter(move |block| bits >> block & 1 == 1);
         if before.touches.samples != next.touches.samples {
-            blocks(self.present)
+            blocks_of(self.present)
                 .for_each(|block| self.turn(band, block, &next.touches, next.touches.samples));
         }
         let changed = match (before.reversed == next.reversed, next.hides_farther) {
@@ -247,9 +311,14 @@ impl TileBuffer {
             (true, true) => self.written,
             (true, false) => 0,
         };
-        for block in blocks(changed) {
-            self.farthest[block] = farthest_of(&self.depth[block], next.reversed);
+        for block in blocks_of(changed) {
+            self.farthest[block] = match self.formed >> block & 1 == 1 {
+                true => self.forms.farthest(block, next.reversed),
+                false => farthest_of(&self.depth[block], next.reversed),
+            };
         }
+        // What was nearer than the level may be farther now.
+        self.level &= if before.reversed == next.reversed { u64::MAX } else { 0 };
     }
 
     fn clear_color(&mut self, block: usize, rgba: [f32; 4], band: &Band<'_>) {
@@ -300,14 +369,14 @@ impl TileBuffer {
     pub(crate) fn store(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
         let clear = touches.clear;
         let (width, height) = (band.width, band.height);
-        (self.present, self.level) = (0, 0);
+        let (seen, formed) = (self.present, self.formed);
+        (self.present, self.level, self.formed) = (0, 0, 0);
         let present = std::mem::take(&mut self.written);
         if present == 0 && clear.is_none() {
             return;
         }
         if touches.samples {
-            let blocks = (0..BLOCKS * BLOCKS).filter(|block| present >> block & 1 == 1);
-            blocks.for_each(|block| self.turn(band, block, touches, false));
+            blocks_of(present).for_each(|block| self.turn(band, block, touches, false));
         }
         let rows = Rows { width, height, tile_x, present };
         let color = clear.and_then(|c| c.color);
@@ -326,6 +395,9 @@ impl TileBuffer {
         if let Some(p) = band.depth.as_mut().filter(|_| touches.depth || depth.is_some()) {
             rows.store(p, depth, |block, row| eight(&self.depth[block], row));
         }
+        if let Some(depths) = &mut band.blocks {
+            self.store_forms(depths, tile_x / TILE, depth.filter(|_| seen == 0), present & !formed);
+        }
         let stencil = clear.and_then(|c| c.stencil);
         if let Some(p) = band.stencil.as_mut().filter(|_| touches.stencil || stencil.is_some()) {
             rows.store(p, stencil, |block, row| eight(&self.stencil[block], row));
@@ -333,6 +405,19 @@ impl TileBuffer {
         if let Some(p) = &mut band.ids {
             rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block], row));
         }
+    }
+}
+
+impl TileBuffer {
+    /// Takes depths back to a target that keeps them in blocks: those of the blocks in `valued` as values. With
+    /// `clear` no block was brought in.
+    fn store_forms(&mut self, to: &mut BandDepths<'_>, tile: usize, clear: Option<f32>, valued: u64) {
+        if let Some(depth) = clear {
+            return to.tiles[tile].clear(depth);
+        }
+        self.forms.valued |= valued;
+        to.tiles[tile].copy_from(&self.forms);
+        blocks_of(valued).for_each(|block| to.set_values(tile, block, &self.depth[block]));
     }
 }
 

@@ -6,6 +6,7 @@ use crate::api::{
 use crate::assemble::{varyings_of, vertex_count};
 use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
+use crate::block_depths::BlockDepths;
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{StageNeeds, stage_of};
@@ -106,9 +107,39 @@ impl TiledRasterizer {
         counters
     }
 
+    /// Draws triangles that write depths and nothing else into depths kept in blocks: shadow maps. Of the states
+    /// only what concerns places and depths is heeded: not stencil tests, blending, antialiasing.
+    /// Of those that go together only the first clears, as in [`Self::draw_all`]; a scissor does not confine it.
+    pub fn draw_depths(&mut self, depths: &mut BlockDepths, draws: &[(Primitives<'_>, State)]) -> Counters {
+        let (width, height) = (depths.width(), depths.height());
+        let mut target = Target {
+            width,
+            height,
+            color: None,
+            depth: None,
+            blocks: Some(depths),
+            stencil: None,
+            ids: None,
+        };
+        let mut counters = Counters::default();
+        let draws: Vec<Draw<'_>> = draws
+            .iter()
+            .map(|(triangles, state)| Draw {
+                triangles: *triangles,
+                state: State { stencil: None, blend: None, antialias: false, multisample: false, ..*state },
+                shading: Shading::None,
+            })
+            .collect();
+        for group in draws.chunk_by(|_, b| b.state.clear.is_none()) {
+            counters += self.draw_group(&mut target, group);
+        }
+        counters
+    }
+
     fn draw_group(&mut self, target: &mut Target<'_>, draws: &[Draw<'_>]) -> Counters {
         let mut clear = draws.first().and_then(|draw| draw.state.clear);
-        if let Some(draw) = draws.first().filter(|draw| draw.state.scissor.is_some()) {
+        let confines = |draw: &&Draw<'_>| draw.state.scissor.is_some() && target.blocks.is_none();
+        if let Some(draw) = draws.first().filter(confines) {
             crate::pixel::clear_in_scissor(target, &draw.state);
             clear = None;
         }
@@ -128,7 +159,7 @@ impl TiledRasterizer {
                 pass,
             });
         }
-        share_touches(&mut parts);
+        share_touches(&mut parts, target.blocks.is_some());
         let frame = Frame { tiles, clears: clear.is_some(), parts: &parts };
         let mut add = |c: FragmentCounts| {
             counters.tested += c.tested;
@@ -261,7 +292,7 @@ fn pass<'a>(
     map: &'a ScreenMap,
     clear: Option<Clear>,
 ) -> Pass<'a> {
-    let (has_depth, format) = (target.depth.is_some(), ColorFormat::of(target));
+    let (has_depth, format) = (target.has_depth(), ColorFormat::of(target));
     let color = ColorPath::of(shading, format);
     let stage = stage_of(shading);
     let needs = stage.map(StageNeeds::of).unwrap_or_default();
@@ -296,6 +327,7 @@ fn pass<'a>(
             stencil: needs.stencil || stencil.is_some(),
             reversed,
             samples: state.multisample && stage.is_some(),
+            keeps_forms: false,
         },
         format,
         stage,
@@ -328,14 +360,16 @@ struct Part<'a> {
     pass: Pass<'a>,
 }
 
-/// Lets each part bring in and take back what any of them touches.
-fn share_touches(parts: &mut [Part<'_>]) {
+/// Lets each part bring in and take back what any of them touches. Depths `in_blocks` stay planes if all parts
+/// can do with that.
+fn share_touches(parts: &mut [Part<'_>], in_blocks: bool) {
+    let keeps_forms = in_blocks && parts.iter().all(|part| part.pass.depth_only);
     let any = |f: fn(&Touches) -> bool| parts.iter().any(|part| f(&part.pass.touches));
     let (color, depth) = (any(|t| t.color), any(|t| t.depth));
     let (reads_depth, stencil) = (any(|t| t.reads_depth), any(|t| t.stencil));
     for part in parts {
         let touches = &mut part.pass.touches;
-        *touches = Touches { color, depth, reads_depth, stencil, ..*touches };
+        *touches = Touches { color, depth, reads_depth, stencil, keeps_forms, ..*touches };
     }
 }
 
@@ -475,6 +509,7 @@ impl Part<'_> {
             tile: [x, y],
             bounds,
             partial: bounds != whole,
+            form: None,
             counts,
         };
         let mut references = self.runs.iter().flat_map(|run| run.of_tile(tile).iter().map(move |r| (run, r)));

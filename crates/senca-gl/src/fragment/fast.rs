@@ -9,7 +9,7 @@ use crate::gl;
 use crate::state::TexTarget;
 use crate::texture::Texels;
 use senca_raster::simd::{Simd, f32x16, i32x16, mask8x16, mask32x16, prelude::*, u8x16, u32x16};
-use senca_raster::{Fragments, LANES};
+use senca_raster::{BlockDepths, Fragments, LANES};
 
 /// How coordinates outside [0, 1] are brought in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -200,7 +200,11 @@ impl FastTexture {
             }
             Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. } => {
                 let mut values = [[0f32; LANES]; 4];
-                gather_depths(depths, numbers, &mut values);
+                if let Some(blocks) = depths.blocks() {
+                    gather_squares(blocks, [&across, &along], linear, &mut values);
+                } else {
+                    gather_depths(depths, numbers, &mut values);
+                }
                 let first = depth_of(simd, t, at.reference, &values[0]);
                 if !linear {
                     return [first; 4];
@@ -337,6 +341,31 @@ fn gather_depths(depths: &[f32], numbers: &[[i32; LANES]], out: &mut [[f32; LANE
     for (to, &i) in out.as_flattened_mut().iter_mut().zip(numbers.as_flattened()) {
         *to = depths.get(i as u32 as usize).copied().unwrap_or_default();
     }
+}
+
+/// The depths of squares of two texels along each axis, of an image that keeps them in blocks.
+#[inline(always)]
+fn gather_squares<S: Simd>(
+    blocks: &BlockDepths,
+    axes: [&Axis<S>; 2],
+    linear: bool,
+    out: &mut [[f32; LANES]; 4],
+) {
+    let [columns, rows] = axes.map(|axis| {
+        let high = if linear { axis.high } else { axis.low };
+        [axis.low.to_array(), high.to_array()]
+    });
+    gather_blocks(blocks, &columns, &rows, out);
+}
+
+#[inline(never)]
+fn gather_blocks(
+    blocks: &BlockDepths,
+    [x0, x1]: &[[i32; LANES]; 2],
+    [y0, y1]: &[[i32; LANES]; 2],
+    out: &mut [[f32; LANES]; 4],
+) {
+    blocks.gather([x0, x1], [y0, y1], out);
 }
 
 #[inline(always)]

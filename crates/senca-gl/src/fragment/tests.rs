@@ -267,7 +267,7 @@ fn levels_are_chosen_by_the_filter() {
 fn depths_are_compared_as_told() {
     let format = InternalFormat::for_texture(gl::DEPTH_COMPONENT24).unwrap();
     let mut image = TexImage::new(format, [2, 1, 1], 0).unwrap();
-    image.texels = Arc::new(Texels::Depth(vec![0.25, 0.75]));
+    image.texels = Arc::new(Texels::Depth(vec![0.25, 0.75].into()));
     let at = |func: Enum, filter: Enum, mode: Enum, s: f32, r: f32| {
         let params = TexParams {
             compare_mode: gl::COMPARE_R_TO_TEXTURE,

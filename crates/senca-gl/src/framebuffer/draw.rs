@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use senca_raster::{ColorPlane, Target};
+use senca_raster::{BlockDepths, ColorPlane, Target};
 
 use super::attach::Attachment;
 use super::object::{Framebuffers, window_colors};
@@ -151,6 +151,23 @@ impl DrawPlanes {
 
     pub(crate) fn depth(&mut self) -> Option<&mut Plane> {
         self.depth.as_mut().filter(|_| self.uses_depth).map(|taken| &mut taken.plane)
+    }
+
+    /// The depths as blocks, where draws touch nothing else: those that are there, or, `cleared` to one depth
+    /// first, new ones. `None` if the planes do not allow it.
+    pub(crate) fn depth_blocks(&mut self, cleared: bool) -> Option<&mut BlockDepths> {
+        if self.samples > 0 || !self.uses_depth || !self.are_alike() {
+            return None;
+        }
+        let plane = &mut self.depth.as_mut()?.plane;
+        let whole = plane.range() == (0..plane.texels.len());
+        let (width, height) = (plane.width, plane.height);
+        // A copy of what others hold on to is not worth it.
+        let texels = Arc::get_mut(&mut plane.texels).filter(|_| whole)?;
+        let (Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. }) = texels else {
+            return None;
+        };
+        if cleared { depths.fresh_blocks(width, height) } else { depths.blocks_mut() }
     }
 
     pub(crate) fn stencil(&mut self) -> Option<&mut Plane> {

@@ -27,7 +27,7 @@ mod tests;
 
 pub(crate) use blit::Aspect;
 pub(crate) use clear::WaitingClear;
-pub(crate) use draw::{Use, Uses};
+pub(crate) use draw::{DrawPlanes, Use, Uses};
 pub(crate) use object::{Framebuffers, MAX_COLOR_ATTACHMENTS, Renderbuffers, SavedBuffers};
 pub(crate) use plane::{Area, Plane, SAMPLES};
 pub(crate) use window::Window;

@@ -3,7 +3,7 @@
 mod shading;
 
 use crate::fragment::Program;
-use crate::framebuffer::{Use, Uses, WaitingClear};
+use crate::framebuffer::{DrawPlanes, Use, Uses, WaitingClear};
 use crate::raster_state::{Batch, Kind, RasterState};
 use crate::state::Cap;
 use crate::{Context, Enum, gl};
@@ -29,6 +29,10 @@ impl Context {
         let rows = if clear.is_some() { 0..u32::MAX } else { rows_of_all(batches) };
         let mut planes = self.framebuffers.take_planes_for(rows);
         let (rasterizer, multisample) = (&mut self.rasterizer, first.state.has(Cap::Multisample));
+        if let Some(passed) = draw_depths(rasterizer, &mut planes, batches, clear) {
+            self.framebuffers.put_back(planes);
+            return passed;
+        }
         let uses = uses(batches, clear.as_ref());
         let passed = planes.draw(multisample, &uses, |mut target, side| {
             draw(rasterizer, &mut target, batches, side, clear).passed
@@ -125,6 +129,44 @@ fn draw(
         };
     }
     counters
+}
+
+/// Draws batches that write depths alone into planes that keep depths in blocks, or may from now on, because
+/// all of them are cleared; returns how many pixels passed. `None`, with nothing done, if that is not so.
+fn draw_depths(
+    rasterizer: &mut TiledRasterizer,
+    planes: &mut DrawPlanes,
+    batches: &[Batch],
+    clear: Option<Clear>,
+) -> Option<u64> {
+    let (has_stencil, has_colors) = (planes.stencil().is_some(), planes.color_count() > 0);
+    let depths_alone = |batch: &Batch| {
+        let s = &batch.state;
+        let stencil = has_stencil && s.has(Cap::StencilTest);
+        let left_out = s.has(Cap::AlphaTest) || s.has(Cap::PolygonStipple) || s.has(Cap::PolygonSmooth);
+        let colors = has_colors && s.color.mask != [false; 4];
+        batch.kind == Kind::Triangles && !colors && !stencil && !left_out
+    };
+    let clears_others = clear.is_some_and(|c| c.color.is_some() || c.stencil.is_some());
+    if clears_others || !batches.iter().all(depths_alone) {
+        return None;
+    }
+    let blocks = planes.depth_blocks(clear.is_some_and(|c| c.depth.is_some()))?;
+    let size = [blocks.width(), blocks.height()];
+    let mut draws: Vec<(Primitives<'_>, State)> = Vec::with_capacity(batches.len());
+    for batch in batches.iter().filter(|batch| !is_culled(batch)) {
+        let mut state = State { clear: clear.filter(|_| draws.is_empty()), ..raster_state(batch) };
+        state.scissor = state.scissor.filter(|scissor| !covers(*scissor, size));
+        let triangles = Primitives {
+            positions: &batch.positions,
+            varyings: &[],
+            stride: 0,
+            indices: &batch.indices,
+            ids: Ids::Same(0),
+        };
+        draws.push((triangles, state));
+    }
+    Some(rasterizer.draw_depths(blocks, &draws).passed)
 }
 
 /// Whether nothing of a batch is to be seen.

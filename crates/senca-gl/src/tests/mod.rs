@@ -227,6 +227,7 @@ fn a_lit_vertex_has_the_colour_of_the_formula() {
 }
 
 mod samples;
+mod shadow_map;
 
 #[test]
 fn all_units_with_fog_and_a_second_colour_are_drawn() {

@@ -13,6 +13,7 @@
 
 mod bindings;
 mod copy;
+mod depths;
 mod format;
 mod image;
 mod mipmap;

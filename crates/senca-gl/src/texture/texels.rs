@@ -1,5 +1,6 @@
 //! The memory behind images, of textures and of framebuffers alike.
 
+use super::depths::Depths;
 use super::{BaseFormat, InternalFormat, StorageKind};
 
 /// Most bytes of an image. What asks for more is out of memory.
@@ -13,13 +14,13 @@ pub(crate) enum Texels {
     /// Colours as floats in [0, 1].
     Rgba32F(Vec<[f32; 4]>),
     /// Depths in [0, 1].
-    Depth(Vec<f32>),
+    Depth(Depths),
     /// Stencil values.
     Stencil(Vec<u8>),
     /// Depths and stencil values, of the same number.
     DepthStencil {
         /// Depths in [0, 1].
-        depth: Vec<f32>,
+        depth: Depths,
         /// Stencil values.
         stencil: Vec<u8>,
     },
@@ -49,10 +50,10 @@ impl Texels {
             StorageKind::Rgba8 => Self::Rgba8(filled([0; 4], count)?),
             StorageKind::Rgba32F if opaque => Self::Rgba32F(filled([0.0, 0.0, 0.0, 1.0], count)?),
             StorageKind::Rgba32F => Self::Rgba32F(filled([0.0; 4], count)?),
-            StorageKind::Depth => Self::Depth(filled(0.0, count)?),
+            StorageKind::Depth => Self::Depth(filled(0.0, count)?.into()),
             StorageKind::Stencil => Self::Stencil(filled(0, count)?),
             StorageKind::DepthStencil => {
-                Self::DepthStencil { depth: filled(0.0, count)?, stencil: filled(0, count)? }
+                Self::DepthStencil { depth: filled(0.0, count)?.into(), stencil: filled(0, count)? }
             }
         })
     }
@@ -73,7 +74,7 @@ impl Texels {
             Self::Rgba8(colors) => colors[index].map(|c| f32::from(c) / 255.0),
             Self::Rgba32F(colors) => colors[index],
             Self::Depth(depth) | Self::DepthStencil { depth, .. } => {
-                let d = depth[index];
+                let d = depth.get(index);
                 [d, d, d, 1.0]
             }
             Self::Stencil(_) => [0.0; 4],
