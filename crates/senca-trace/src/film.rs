@@ -14,6 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+use senca_math::glam::DVec2;
 use senca_math::{Control, Image};
 
 use crate::antialias::{Antialiasing, Places, SquareCache};
@@ -87,9 +88,13 @@ impl Area {
     /// Columns and rows of the pixels of a tile, so that those that follow each other are near each other
     /// both ways: square by square (Morton 1966).
     fn places_in_squares(self) -> impl Iterator<Item = (u32, u32)> {
-        let places = IN_SQUARES.iter().map(|&[x, y]| (u32::from(x), u32::from(y)));
-        let inside = move |&(x, y): &(u32, u32)| x < self.width && y < self.height;
-        places.filter(inside).map(move |(x, y)| (self.x + x, self.y + y))
+        let inside = IN_SQUARES.iter().filter(move |place| self.has(**place));
+        inside.map(move |&[x, y]| (self.x + u32::from(x), self.y + u32::from(y)))
+    }
+
+    /// Whether a tile has a pixel in this column and row of itself.
+    fn has(&self, [x, y]: [u8; 2]) -> bool {
+        u32::from(x) < self.width && u32::from(y) < self.height
     }
 
     /// Number of a pixel of this area.
@@ -157,17 +162,6 @@ struct Tally {
 struct Exposure {
     sum: [f32; 4],
     tally: Tally,
-}
-
-impl Exposure {
-    #[inline]
-    fn add(&mut self, color: [f32; 4], weight: f32) {
-        for (sum, component) in self.sum.iter_mut().zip(color) {
-            *sum += weight * component;
-        }
-        self.tally.weight += weight;
-        self.tally.count += 1;
-    }
 }
 
 impl Tally {
@@ -339,33 +333,28 @@ impl Film {
         progress: &Progress<'_>,
         report: &mut FilmReport,
     ) -> Result<(), TraceError> {
-        let (area, seed) = (self.settings.area, self.settings.seed);
-        let before = (self.samples > 0).then(|| (self.sums.clone(), self.tallies.clone()));
-        let same = self.tally(usize::MAX);
+        let area = self.settings.area;
+        let is_fresh = self.samples == 0;
+        let before = (!is_fresh).then(|| (self.sums.clone(), self.tallies.clone()));
+        let sampler = Sampler::of_seed(Pattern::Sobol, self.settings.seed);
+        let even: Vec<DVec2> = range.clone().map_while(|sample| places.even(sample)).collect();
+        let samples = Samples { places, even: &even, range: range.clone(), sampler };
         let work_on = |bench: &mut Bench<I>, (tile, mut part): (Area, TilePart<'_>)| {
-            let Bench { work, batch, exposures, .. } = bench;
+            let Bench { work, batch, plate, pixels, .. } = bench;
             let before = I::counts(work);
-            part.load(same, exposures);
-            batch.clear();
-            for (x, y) in tile.places_in_squares() {
-                let pixel = tile.index(x, y);
-                for sample in range.clone() {
-                    let mut sampler = Sampler::new(Pattern::Sobol, seed, x, y, sample);
-                    let (within, weight) = places.place(sample, &mut sampler);
-                    let place = SamplePlace {
-                        x: f64::from(x) + within.x,
-                        y: f64::from(y) + within.y,
-                        row: y,
-                        sampler,
-                    };
-                    batch.push(place, pixel, weight);
-                    if batch.is_full() {
-                        batch.develop(integrator, work, progress.control, exposures)?;
-                    }
+            part.load(is_fresh, plate);
+            pixels.clear();
+            pixels.extend(IN_SQUARES.iter().filter(|place| tile.has(**place)));
+            let at_once = (Batch::MOST / range.len().max(1)).max(1);
+            for pixels in pixels.chunks(at_once) {
+                let mut rest = samples.clone();
+                while let Some(samples) = rest.next_part(Batch::MOST) {
+                    batch.fill(tile, pixels, &samples);
+                    batch.develop(integrator, work, progress.control)?;
+                    batch.add_to(plate, tile, pixels);
                 }
             }
-            batch.develop(integrator, work, progress.control, exposures)?;
-            part.store(exposures);
+            part.store(plate);
             Some(I::counts(work).since(&before))
         };
         let tiles = area.tiles();
@@ -406,11 +395,14 @@ impl Film {
         let same = self.tally(usize::MAX).divisor();
         let Area { width, height, .. } = self.settings.area;
         let mut pixels = self.sums;
-        for (number, pixel) in pixels.iter_mut().enumerate() {
-            let divisor = self.tallies.get(number).map_or(same, |tally| tally.divisor());
-            let [r, g, b, a] = divisor.map_or([0.0; 4], |divisor| pixel.map(|v| v / divisor));
-            let divides = transparent && a > 0.0 && a < 1.0;
-            *pixel = if divides { [r / a, g / a, b / a, a] } else { [r, g, b, a] };
+        let is_done = self.tallies.is_empty() && same == Some(1.0) && !transparent;
+        if !is_done {
+            for (number, pixel) in pixels.iter_mut().enumerate() {
+                let divisor = self.tallies.get(number).map_or(same, |tally| tally.divisor());
+                let [r, g, b, a] = divisor.map_or([0.0; 4], |divisor| pixel.map(|v| v / divisor));
+                let divides = transparent && a > 0.0 && a < 1.0;
+                *pixel = if divides { [r / a, g / a, b / a, a] } else { [r, g, b, a] };
+            }
         }
         // A film has as many sums as its area has pixels.
         Image::from_pixels(width, height, pixels).unwrap_or_else(|| Image::new(0, 0, [0.0; 4]))
@@ -435,15 +427,22 @@ impl Film {
 struct Bench<I: Integrator> {
     work: I::Work,
     batch: Batch,
-    /// Of the tile's pixels.
-    exposures: Vec<Exposure>,
+    plate: Plate,
+    /// Columns and rows of the pixels of the tile, square by square.
+    pixels: Vec<[u8; 2]>,
     /// Of adaptive supersampling.
     caches: Vec<SquareCache>,
 }
 
 impl<I: Integrator> Default for Bench<I> {
     fn default() -> Self {
-        Self { work: I::Work::default(), batch: Batch::default(), exposures: Vec::new(), caches: Vec::new() }
+        Self {
+            work: I::Work::default(),
+            batch: Batch::default(),
+            plate: Plate::default(),
+            pixels: Vec::new(),
+            caches: Vec::new(),
+        }
     }
 }
 
@@ -455,22 +454,51 @@ struct TilePart<'a> {
     tallies: Vec<&'a mut [Tally]>,
 }
 
-impl TilePart<'_> {
-    /// What the pixels have, `same` being the tally of all without their own.
-    fn load(&self, same: Tally, exposures: &mut Vec<Exposure>) {
-        exposures.clear();
-        exposures.extend(self.sums.iter().flat_map(|row| &**row).map(|&sum| Exposure { sum, tally: same }));
-        for (exposure, tally) in exposures.iter_mut().zip(self.tallies.iter().flat_map(|row| &**row)) {
-            exposure.tally = *tally;
+/// What the pixels of a tile have gathered.
+#[derive(Default)]
+struct Plate {
+    sums: Vec<[f32; 4]>,
+    /// Empty where all pixels of the film have the same.
+    tallies: Vec<Tally>,
+}
+
+impl Plate {
+    #[inline]
+    fn add(&mut self, pixel: usize, color: [f32; 4], weight: f32) {
+        for (sum, component) in self.sums[pixel].iter_mut().zip(color) {
+            *sum += weight * component;
+        }
+        if let Some(tally) = self.tallies.get_mut(pixel) {
+            tally.weight += weight;
+            tally.count += 1;
         }
     }
+}
 
-    fn store(&mut self, exposures: &[Exposure]) {
-        for (sum, exposure) in self.sums.iter_mut().flat_map(|row| &mut **row).zip(exposures) {
-            *sum = exposure.sum;
+impl TilePart<'_> {
+    /// What the pixels have; `is_fresh` where that is nothing.
+    fn load(&self, is_fresh: bool, plate: &mut Plate) {
+        plate.sums.clear();
+        plate.tallies.clear();
+        if is_fresh {
+            plate.sums.resize(self.sums.iter().map(|row| row.len()).sum(), [0.0; 4]);
+        } else {
+            self.sums.iter().for_each(|row| plate.sums.extend_from_slice(row));
         }
-        for (tally, exposure) in self.tallies.iter_mut().flat_map(|row| &mut **row).zip(exposures) {
-            *tally = exposure.tally;
+        self.tallies.iter().for_each(|row| plate.tallies.extend_from_slice(row));
+    }
+
+    fn store(&mut self, plate: &Plate) {
+        let (mut sums, mut tallies) = (plate.sums.as_slice(), plate.tallies.as_slice());
+        for row in &mut self.sums {
+            let (own, others) = sums.split_at(row.len());
+            row.copy_from_slice(own);
+            sums = others;
+        }
+        for row in &mut self.tallies {
+            let (own, others) = tallies.split_at(row.len());
+            row.copy_from_slice(own);
+            tallies = others;
         }
     }
 }
@@ -500,12 +528,38 @@ fn tile_parts<'a>(
     parts
 }
 
-/// Samples that are taken together.
+/// Samples of each pixel.
+#[derive(Clone)]
+struct Samples<'a> {
+    places: &'a Places,
+    /// Place of each, where those are the same in all pixels; else nothing.
+    even: &'a [DVec2],
+    range: std::ops::Range<u32>,
+    /// Of the seed.
+    sampler: Sampler,
+}
+
+impl Samples<'_> {
+    /// The next of them, at most `most`; `None` when there are no more.
+    fn next_part(&mut self, most: usize) -> Option<Self> {
+        if self.range.is_empty() {
+            return None;
+        }
+        let count = most.min(self.range.len());
+        let middle = self.range.start + count as u32;
+        let (even, others) = self.even.split_at(count.min(self.even.len()));
+        let part = Self { even, range: self.range.start..middle, ..*self };
+        (self.even, self.range.start) = (others, middle);
+        Some(part)
+    }
+}
+
+/// Samples that are taken together: some of each of some pixels, pixel by pixel.
 #[derive(Debug, Default)]
 struct Batch {
     places: Vec<SamplePlace>,
-    /// Number of the pixel that each belongs to, and its weight there.
-    pixels: Vec<(usize, f32)>,
+    /// Where not all are 1.
+    weights: Vec<f32>,
     colors: Vec<[f32; 4]>,
 }
 
@@ -513,40 +567,63 @@ impl Batch {
     /// Samples at most.
     const MOST: usize = 1024;
 
-    fn clear(&mut self) {
+    /// Goes to the samples of these pixels of a tile.
+    fn fill(&mut self, tile: Area, pixels: &[[u8; 2]], samples: &Samples<'_>) {
         self.places.clear();
-        self.pixels.clear();
+        self.weights.clear();
+        let Samples { places, even, range, sampler } = samples;
+        let pixels = pixels.iter().map(|&[x, y]| (tile.x + u32::from(x), tile.y + u32::from(y)));
+        let place = |(x, y): (u32, u32), within: DVec2, sampler| SamplePlace {
+            x: f64::from(x) + within.x,
+            y: f64::from(y) + within.y,
+            row: y,
+            sampler,
+        };
+        if let [within] = even {
+            // Written out, since most pictures are taken so: no sampler is asked, and none is kept in memory.
+            let at = |(x, y)| place((x, y), *within, sampler.in_pixel(x, y, range.start));
+            return self.places.extend(pixels.map(at));
+        }
+        for (x, y) in pixels {
+            for (number, sample) in range.clone().enumerate() {
+                let sampler = sampler.in_pixel(x, y, sample);
+                if let Some(within) = even.get(number) {
+                    self.places.push(place((x, y), *within, sampler));
+                } else {
+                    let mut sampler = sampler;
+                    let (within, weight) = places.place(sample, &mut sampler);
+                    self.places.push(place((x, y), within, sampler));
+                    self.weights.push(weight);
+                }
+            }
+        }
     }
 
-    #[inline]
-    fn push(&mut self, place: SamplePlace, pixel: usize, weight: f32) {
-        self.places.push(place);
-        self.pixels.push((pixel, weight));
-    }
-
-    fn is_full(&self) -> bool {
-        self.places.len() >= Self::MOST
-    }
-
-    /// Takes the samples, adds them to their pixels, in order, and forgets them; `None` when the caller
-    /// asked to stop.
+    /// Takes the samples; `None` when the caller asked to stop.
     fn develop<I: Integrator>(
         &mut self,
         integrator: &I,
         work: &mut I::Work,
         control: &Control<'_>,
-        exposures: &mut [Exposure],
     ) -> Option<()> {
         if control.is_cancelled() {
             return None;
         }
         self.colors.clear();
         integrator.sample_many(&self.places, work, &mut self.colors);
-        for (&(pixel, weight), &color) in self.pixels.iter().zip(&self.colors) {
-            exposures[pixel].add(color, weight);
-        }
-        self.clear();
         Some(())
+    }
+
+    /// Adds the samples to their pixels, in order.
+    fn add_to(&self, plate: &mut Plate, tile: Area, pixels: &[[u8; 2]]) {
+        let of_each = self.colors.len() / pixels.len().max(1);
+        let mut weights = self.weights.iter();
+        for (&[x, y], colors) in pixels.iter().zip(self.colors.chunks_exact(of_each.max(1))) {
+            let pixel = usize::from(y) * tile.width as usize + usize::from(x);
+            for &color in colors {
+                plate.add(pixel, color, weights.next().copied().unwrap_or(1.0));
+            }
+        }
     }
 }
 

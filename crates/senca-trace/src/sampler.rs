@@ -32,7 +32,7 @@ pub enum Pattern {
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     pattern: Pattern,
-    /// Hash of the seed and the pixel.
+    /// Hash of the seed, plus the number of the pixel.
     key: u64,
     sample: u32,
     dimension: u32,
@@ -48,10 +48,22 @@ impl Sampler {
     /// Sample number `sample` of the pixel in column `x` and row `y`, at dimension 0. Samples may be
     /// taken in any order; numbers 0 to 2^k - 1 are even among themselves.
     #[must_use]
+    #[inline]
     pub fn new(pattern: Pattern, seed: u64, x: u32, y: u32, sample: u32) -> Self {
+        Self::of_seed(pattern, seed).in_pixel(x, y, sample)
+    }
+
+    /// Sample 0 of the pixel in the upper left corner, from which [`Sampler::in_pixel`] makes the others.
+    pub(crate) fn of_seed(pattern: Pattern, seed: u64) -> Self {
+        Self { pattern, key: mix(seed.wrapping_add(GOLDEN)), sample: 0, dimension: 0 }
+    }
+
+    /// Sample number `sample` of another pixel. This is an addition: the numbers of a pixel are stirred when the
+    /// first is asked for, since most pictures need none.
+    #[inline]
+    pub(crate) fn in_pixel(self, x: u32, y: u32, sample: u32) -> Self {
         let pixel = u64::from(y) << 32 | u64::from(x);
-        let key = mix(mix(seed.wrapping_add(GOLDEN)).wrapping_add(pixel));
-        Self { pattern, key, sample, dimension: 0 }
+        Self { key: self.key.wrapping_add(pixel), sample, dimension: 0, ..self }
     }
 
     /// Goes to a dimension, so that what follows does not depend on how many numbers were asked for
@@ -92,7 +104,7 @@ impl Sampler {
             Pattern::Sobol => 0,
             Pattern::Independent => u64::from(self.sample) << 32,
         };
-        let first = mix(self.key ^ mix(GOLDEN.wrapping_mul(u64::from(self.dimension) + 1) ^ own));
+        let first = mix(mix(self.key) ^ mix(GOLDEN.wrapping_mul(u64::from(self.dimension) + 1) ^ own));
         self.dimension = self.dimension.wrapping_add(1);
         (first, (mix(first ^ GOLDEN) >> 32) as u32)
     }

@@ -128,16 +128,24 @@ impl Places {
     #[inline]
     pub(crate) fn place(&self, sample: u32, sampler: &mut Sampler) -> (DVec2, f32) {
         match self {
-            Self::Middle => (DVec2::splat(0.5), 1.0),
+            Self::Middle | Self::Grid(_) => (self.even(sample).unwrap_or_default(), 1.0),
             Self::Jitter(amplitude) => {
                 let [u, v] = sampler.next_2d();
                 (DVec2::splat(0.5) + *amplitude * (DVec2::new(u, v) - 0.5), 1.0)
             }
+            Self::Filtered(table) => table.place(sampler.next_2d()),
+        }
+    }
+
+    /// Place of a sample where that is the same in all pixels; its weight is 1.
+    pub(crate) fn even(&self, sample: u32) -> Option<DVec2> {
+        match self {
+            Self::Middle => Some(DVec2::splat(0.5)),
             Self::Grid(n) => {
                 let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(*n);
-                (DVec2::new(middle(sample % n), middle(sample / n % n)), 1.0)
+                Some(DVec2::new(middle(sample % n), middle(sample / n % n)))
             }
-            Self::Filtered(table) => table.place(sampler.next_2d()),
+            Self::Jitter(_) | Self::Filtered(_) => None,
         }
     }
 }
