@@ -46,6 +46,14 @@ impl<'s> Sky<'s> {
         }
     }
 
+    /// The colour where it is the same everywhere.
+    pub(crate) fn even(&self) -> Option<LinearRgb> {
+        match self.background {
+            Background::Color(color) => Some(color),
+            _ => None,
+        }
+    }
+
     /// Whether pixels without anything are transparent.
     pub(crate) fn is_transparent(&self) -> bool {
         self.background == Background::None

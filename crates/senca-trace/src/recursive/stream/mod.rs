@@ -50,8 +50,9 @@ const SHADOW_LISTS: usize = 8;
 /// Rays towards lights that are kept before they are looked at.
 const MOST_SHADOWS: usize = 1024;
 
-/// Samples that are followed together. More are no faster, and take more fresh memory.
-const BATCH: usize = 256;
+/// Samples that are followed together. With fewer, groups of deep rays are seldom full; with more, rows leave the
+/// near cache.
+const BATCH: usize = 1024;
 
 /// Most stretches of ranks that are compared with each rank.
 const MOST_STRETCHES: usize = 8;
@@ -101,8 +102,9 @@ pub(super) struct Desk {
     shadows: Vec<Rays>,
     /// Those that look for patches together.
     block: RayBlock,
-    /// What each sample has gathered.
+    /// What each sample has gathered, those of the batch behind those before it.
     sums: Vec<[f32; 4]>,
+    first_sum: usize,
 }
 
 impl Desk {
@@ -119,13 +121,13 @@ impl Desk {
             self.rank.resize(count + LANES, 0);
             self.hits.resize(count + LANES, NO_HIT);
         }
-        self.sums.resize(count, [0.0; 4]);
-        self.sums.fill([0.0; 4]);
+        self.first_sum = self.sums.len();
+        self.sums.resize(self.first_sum + count, [0.0; 4]);
     }
 
     #[inline(always)]
     fn add(&mut self, slot: usize, light: LinearRgb, alpha: f32) {
-        let sum = &mut self.sums[slot];
+        let sum = &mut self.sums[self.first_sum + slot];
         *sum = [sum[0] + light.r, sum[1] + light.g, sum[2] + light.b, sum[3] + alpha];
     }
 }
@@ -207,10 +209,12 @@ impl Tracer<'_> {
             return;
         };
         let mut desk = std::mem::take(&mut work.desk);
+        std::mem::swap(&mut desk.sums, out);
+        desk.sums.reserve(places.len());
         for places in places.chunks(BATCH) {
             self.batch(stream, places, work, &mut desk);
-            out.extend_from_slice(&desk.sums);
         }
+        std::mem::swap(&mut desk.sums, out);
         work.desk = desk;
     }
 
@@ -401,6 +405,17 @@ impl Tracer<'_> {
     fn leave_stream(&self, pass: &mut Pass<'_>) {
         let list = std::mem::take(&mut pass.desk.lists[LEAVING]);
         let covered = if self.sky.is_transparent() { 0.0 } else { 1.0 };
+        if let Some(color) = self.sky.even() {
+            // What the eye sees at once comes with all of its light.
+            let of_eye = pass.nest == 0;
+            let alpha = if of_eye { 1.0 } else { 0.0 };
+            for &number in &list[..pass.desk.lengths[LEAVING]] {
+                let (slot, weight, _) = pass.desk.rays.leaving(number as usize);
+                pass.desk.add(slot, if of_eye { color } else { weight * color }, alpha);
+            }
+            pass.desk.lists[LEAVING] = list;
+            return;
+        }
         for &number in &list[..pass.desk.lengths[LEAVING]] {
             let (slot, weight, direction) = pass.desk.rays.leaving(number as usize);
             let (seen, alpha) = match pass.nest {
