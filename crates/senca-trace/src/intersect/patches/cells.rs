@@ -32,8 +32,8 @@ pub(super) struct Cell {
     pub tilt: f32,
     /// Share of both that the cell itself reaches.
     pub inner: f32,
-    /// How far the surface gets from the centre, in the frame.
-    pub extent: Vec3,
+    /// Box around the surface, in the frame: how far it gets from the centre.
+    pub extent: [Vec3; 2],
     /// Patch it belongs to.
     pub patch: u32,
     /// Middle and half size of its rectangle: multiples of powers of 1/2, and so exact.
@@ -79,7 +79,7 @@ pub(super) struct Frame {
     center: DVec3,
     /// Bounds on the change of the derivatives, summed over both: x, y, z in the frame.
     change: DVec3,
-    extent: DVec3,
+    extent: [DVec3; 2],
     /// The piece in its frame, the centre at the origin, as a quotient q / w with w = 1 there.
     local: Net<DVec4>,
 }
@@ -160,12 +160,12 @@ fn frame(net: &Net<DVec4>, is_rational: bool) -> Option<Frame> {
     Some(Frame { local_from_object, center: jet.value, change, extent, local })
 }
 
-/// Change of the derivatives, per half cell, and extent of a net that covers a square of half size `half`.
-fn bounds(local: &Net<DVec4>, half: f64, is_rational: bool) -> (DVec3, DVec3) {
+/// Change of the derivatives, per half cell, and box around a net that covers a square of half size `half`.
+fn bounds(local: &Net<DVec4>, half: f64, is_rational: bool) -> (DVec3, [DVec3; 2]) {
     let place = Range::of(local.points().iter().map(|p| (p.truncate() / p.w).extend(p.w)));
     let change = change(local, Axis::U, 0.5 / half, DVec3::X, &place, is_rational)
         + change(local, Axis::V, 0.5 / half, DVec3::Y, &place, is_rational);
-    (change, place.low.abs().max(place.high.abs()).truncate())
+    (change, [place.low.truncate(), place.high.truncate()])
 }
 
 /// How much the derivative along an axis, per half cell, differs from `unit` at most.
@@ -216,7 +216,7 @@ impl Cell {
                 spread: Vec2::ZERO,
                 tilt: f32::INFINITY,
                 inner: 1.0,
-                extent: Vec3::INFINITY,
+                extent: [Vec3::NEG_INFINITY, Vec3::INFINITY],
                 patch,
                 uv,
                 hull: hull(net),
@@ -235,7 +235,7 @@ impl Cell {
             spread: change.truncate(),
             tilt: change.z,
             inner: ((frame.change + loss) / outer).max_element().min(1.0) as f32,
-            extent: (frame.extent + loss).as_vec3(),
+            extent: [(frame.extent[0] - loss).as_vec3(), (frame.extent[1] + loss).as_vec3()],
             patch,
             uv,
             hull: hull(net),
@@ -287,8 +287,9 @@ impl Cell {
         }
         // Interval of the line between each pair of sides; lines along a pair are inside or outside.
         let along = d.abs().cmple(Vec3::splat(1e-20));
-        let (a, b) = ((-self.extent - o) / d, (self.extent - o) / d);
-        let outside = o.abs().cmpgt(self.extent);
+        let [low, high] = self.extent;
+        let (a, b) = ((low - o) / d, (high - o) / d);
+        let outside = o.cmplt(low) | o.cmpgt(high);
         let enter = Vec3::select(along, Vec3::NEG_INFINITY, a.min(b));
         let leave = Vec3::select(along, Vec3::INFINITY, a.max(b));
         let misses =

@@ -1,11 +1,11 @@
 //! Boxes around cells, eight at a time.
 
-use fearless_simd::{Simd, f32x8, prelude::*};
+use fearless_simd::{Simd, f32x8, i64x8, prelude::*};
 use senca_math::glam::Vec3;
 use smallvec::SmallVec;
 
 use super::divide::{BinaryNode, BinaryTree, NodeKind};
-use crate::lanes::{bits_of, channels};
+use crate::lanes::{M, bits_of, channels};
 
 /// Boxes of one node.
 const WIDTH: usize = 8;
@@ -198,8 +198,8 @@ pub(super) trait Bundle<S: Simd> {
 const FEW: u32 = 6;
 
 /// What some rays still have to look at.
-#[derive(Clone, Copy)]
-struct Errand {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Errand {
     link: Link,
     /// Not after the place where one of them meets the box first.
     near: f32,
@@ -214,10 +214,16 @@ impl Hierarchy {
     ///
     /// Of a node that many rays are at, bounds on all rays leave out most boxes, and sixteen rays at a time
     /// are asked about the others. So rays that go all ways are soon on their own, where each asks for
-    /// itself.
+    /// itself. `stack` is room that is kept from one walk to the next.
     #[inline(always)]
-    pub(super) fn walk<S: Simd, B: Bundle<S>>(&self, simd: S, root: Link, bundle: &mut B) -> u64 {
-        let mut stack: SmallVec<[Errand; 64]> = SmallVec::new();
+    pub(super) fn walk<S: Simd, B: Bundle<S>>(
+        &self,
+        simd: S,
+        root: Link,
+        bundle: &mut B,
+        stack: &mut Vec<Errand>,
+    ) -> u64 {
+        stack.clear();
         if let Some(cell) = root.as_cell().filter(|_| root != Link::NONE) {
             let sides = [[f32::NEG_INFINITY, f32::INFINITY]; 3];
             bundle.cell(simd, cell, bundle.open(), &sides);
@@ -244,13 +250,12 @@ impl Hierarchy {
             let mut go_on = |slot: usize, rays: u64, near: f32| {
                 let errand =
                     Errand { link: node.children[slot], near, rays, node: number, slot: slot as u32 };
-                if rays != 0 {
-                    push_errand(&mut stack, if B::SORTED { bottom } else { usize::MAX }, errand);
-                }
+                push_errand(stack, if B::SORTED { bottom } else { usize::MAX }, errand);
             };
             if rays.count_ones() <= FEW {
-                let (of_boxes, nears) = few_at(simd, node, rays, bundle);
-                for slot in 0..WIDTH {
+                let (met, of_boxes, nears) = few_at(simd, node, rays, bundle);
+                for slot in bits_of(met) {
+                    let slot = slot % WIDTH;
                     go_on(slot, of_boxes[slot], nears[slot]);
                 }
                 continue;
@@ -258,7 +263,10 @@ impl Hierarchy {
             let (met, nears) = slabs.meet(node, bundle.limit());
             for slot in bits_of(met) {
                 let slot = slot % WIDTH;
-                go_on(slot, bundle.meet_box(simd, rays, &node.sides_of(slot)), nears[slot]);
+                let rays = bundle.meet_box(simd, rays, &node.sides_of(slot));
+                if rays != 0 {
+                    go_on(slot, rays, nears[slot]);
+                }
             }
         }
         visited
@@ -267,7 +275,7 @@ impl Hierarchy {
 
 /// Keeps the entries from `bottom` on in descending order of distance.
 #[inline(always)]
-fn push_errand(stack: &mut SmallVec<[Errand; 64]>, bottom: usize, errand: Errand) {
+fn push_errand(stack: &mut Vec<Errand>, bottom: usize, errand: Errand) {
     let mut i = stack.len();
     stack.push(errand);
     while i > bottom && stack[i - 1].near < errand.near {
@@ -277,15 +285,15 @@ fn push_errand(stack: &mut SmallVec<[Errand; 64]>, bottom: usize, errand: Errand
     stack[i] = errand;
 }
 
-/// Which rays meet the boxes of a node, and where the first of them does.
+/// Which boxes of a node are met, by which rays, and where the first of them does.
 #[inline(always)]
 fn few_at<S: Simd>(
     simd: S,
     node: &WideNode,
     rays: u64,
     bundle: &impl Bundle<S>,
-) -> ([u64; WIDTH], [f32; WIDTH]) {
-    let mut of_boxes = [0; WIDTH];
+) -> (u64, [u64; WIDTH], [f32; WIDTH]) {
+    let (mut any, mut of_boxes) = (0, i64x8::splat(simd, 0));
     let mut first = f32x8::splat(simd, f32::INFINITY);
     for ray in bits_of(rays) {
         let (origin, inverse, [low, high]) = bundle.one(ray);
@@ -301,11 +309,12 @@ fn few_at<S: Simd>(
         }
         let met = near.simd_le(far);
         first = met.select(first.min(near), first);
-        for slot in bits_of(met.to_bitmask()) {
-            of_boxes[slot % WIDTH] |= 1 << ray;
-        }
+        let met = met.to_bitmask();
+        let own = of_boxes | i64x8::splat(simd, 1 << ray);
+        of_boxes = M::from_bitmask(simd, met).select(own, of_boxes);
+        any |= met;
     }
-    (of_boxes, first.into())
+    (any, of_boxes.to_array().map(i64::cast_unsigned), first.into())
 }
 
 /// A beam made ready for boxes.

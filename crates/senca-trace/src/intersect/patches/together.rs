@@ -16,7 +16,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block::{BLOCK, DIRECTION, FAR, INVERSE, NEAR, RayBlock, WIDE};
 use super::cells::{Cell, MARGIN, PLACE_SLACK};
-use super::hierarchy::{Beam, Bundle};
+use super::hierarchy::{Beam, Bundle, Errand};
 use super::search::{Hit, Nearest, Newton, SETTLED, Search, WIDEST, settle};
 use super::{PatchSurface, SINGULAR};
 use crate::lanes::{F, LANES, M, V, bits_of, channels, eight, first_lanes, lanes_of, larger};
@@ -77,15 +77,17 @@ impl PatchSurface {
             return;
         }
         let mut met = block.met.take().unwrap_or_default();
+        let mut errands = std::mem::take(&mut met.errands);
         met.clear();
         let open = block.live();
         let (far, patch) = (f32::INFINITY, u32::MAX);
         let mut search: BlockSearch<'_, ANY> =
             BlockSearch { surface: self, block, met: &mut met, open, far, patch, tests: 0 };
-        counters.nodes += self.hierarchy.walk(simd, self.root, &mut search);
+        counters.nodes += self.hierarchy.walk(simd, self.root, &mut search, &mut errands);
         search.newton_all(simd);
         search.divide_rest();
         counters.tests += search.tests;
+        met.errands = errands;
         block.met = Some(met);
     }
 
@@ -342,6 +344,8 @@ pub(super) struct Met {
     len: usize,
     /// Rays and cells of which nothing is known, which are looked at in the end.
     put_off: Vec<(u8, u32)>,
+    /// Room for the walk through the boxes.
+    errands: Vec<Errand>,
 }
 
 /// Fewer than eight that wait, those of one more cell, and eight that are read beyond the last.
@@ -349,7 +353,14 @@ const ROOM: usize = BLOCK + 2 * LANES;
 
 impl Default for Met {
     fn default() -> Self {
-        Self { numbers: [0; ROOM], cells: [0; ROOM], near: [[0.0; ROOM]; 2], len: 0, put_off: Vec::new() }
+        Self {
+            numbers: [0; ROOM],
+            cells: [0; ROOM],
+            near: [[0.0; ROOM]; 2],
+            len: 0,
+            put_off: Vec::new(),
+            errands: Vec::new(),
+        }
     }
 }
 
@@ -425,7 +436,8 @@ fn meet_plane<S: Simd>(
     let once = (reach_x.simd_lt(least) & reach_y.simd_lt(least)).to_bitmask() & rays;
     let mut unknown = rays & !once;
     if unknown != 0 && cell.tilt < f32::INFINITY {
-        unknown &= meet_frame(simd, cell, &o, &d);
+        let limits = [row(simd, block, NEAR, first), row(simd, block, FAR, first)];
+        unknown &= meet_frame(simd, cell, &o, &d, limits);
     }
     let (inner, one) = (f32x16::splat(simd, cell.inner), f32x16::splat(simd, 1.0));
     let inside = (x.abs() - inner * reach_x).simd_le(one) & (y.abs() - inner * reach_y).simd_le(one);
@@ -445,19 +457,23 @@ fn meet_plane<S: Simd>(
     unknown
 }
 
-/// Which of sixteen rays, given in the frame of a cell, can meet it at all: the twin of what
-/// [`Cell::meets`] asks of rays along the surface.
+/// Which of sixteen rays, given in the frame of a cell, can meet it at all before the end of their interest: the
+/// twin of what [`Cell::meets`] asks of rays along the surface.
 #[inline(always)]
-fn meet_frame<S: Simd>(simd: S, cell: &Cell, o: &[f32x16<S>; 3], d: &[f32x16<S>; 3]) -> u64 {
-    let extent = cell.extent.to_array();
-    let mut enter = f32x16::splat(simd, f32::NEG_INFINITY);
-    let mut leave = f32x16::splat(simd, f32::INFINITY);
+fn meet_frame<S: Simd>(
+    simd: S,
+    cell: &Cell,
+    o: &[f32x16<S>; 3],
+    d: &[f32x16<S>; 3],
+    [mut enter, mut leave]: [f32x16<S>; 2],
+) -> u64 {
+    let [low, high] = cell.extent.map(|corner| corner.to_array());
     let mut outside = 0;
     for k in 0..3 {
-        let side = f32x16::splat(simd, extent[k]);
+        let (low, high) = (f32x16::splat(simd, low[k]), f32x16::splat(simd, high[k]));
         let along = d[k].abs().simd_le(f32x16::splat(simd, 1e-20));
-        outside |= (along & o[k].abs().simd_gt(side)).to_bitmask();
-        let (a, b) = ((-side - o[k]) / d[k], (side - o[k]) / d[k]);
+        outside |= (along & (o[k].simd_lt(low) | o[k].simd_gt(high))).to_bitmask();
+        let (a, b) = ((low - o[k]) / d[k], (high - o[k]) / d[k]);
         enter = along.select(enter, enter.max(a.min(b)));
         leave = along.select(leave, leave.min(a.max(b)));
     }
