@@ -39,6 +39,7 @@ mod search;
 mod together;
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
@@ -71,8 +72,8 @@ pub struct PatchSurface {
     cells: Vec<Cell>,
     hierarchy: Hierarchy,
     root: Link,
-    /// Where each patch begins in the hierarchy, and its box.
-    parts: Vec<(Link, Aabb)>,
+    /// Where each patch begins in the hierarchy, its box, and its cells.
+    parts: Vec<(Link, Aabb, Range<u32>)>,
     kind: Kind,
     is_closed: bool,
     level: Level,
@@ -181,7 +182,11 @@ impl PatchSurface {
             self.cells.extend(cells);
             let whole = &tree.nodes[0];
             let place = |p: senca_math::glam::Vec3| self.center + self.scale * p.as_dvec3();
-            self.parts.push((root, Aabb { min: place(whole.low), max: place(whole.high) }));
+            self.parts.push((
+                root,
+                Aabb { min: place(whole.low), max: place(whole.high) },
+                first..self.cells.len() as u32,
+            ));
             boxes.push(whole.clone());
         }
         let top = divide::tree_over(boxes);

@@ -18,8 +18,9 @@ use super::patch::quotient;
 use super::roots::Domain;
 use crate::lanes::channels;
 
-/// A nearly flat piece of a patch.
+/// A nearly flat piece of a patch. What all rays ask that come near it fills the first of its two cache lines.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub(super) struct Cell {
     /// Cell frame from normalized space; zero for a cell without a frame.
     pub local_from_object: Mat3,
@@ -32,12 +33,12 @@ pub(super) struct Cell {
     pub tilt: f32,
     /// Share of both that the cell itself reaches.
     pub inner: f32,
-    /// Box around the surface, in the frame: how far it gets from the centre.
-    pub extent: [Vec3; 2],
     /// Patch it belongs to.
     pub patch: u32,
     /// Middle and half size of its rectangle: multiples of powers of 1/2, and so exact.
     pub uv: [f32; 4],
+    /// Box around the surface, in the frame: how far it gets from the centre.
+    pub extent: [Vec3; 2],
     /// Points of which the cell lies within the hull, coordinate by coordinate, where they are sixteen.
     pub hull: Option<Box<[[f32; 16]; 3]>>,
 }
@@ -318,3 +319,5 @@ pub(super) enum Meeting {
     /// Anything may be.
     Unknown,
 }
+
+const _: () = assert!(size_of::<Cell>() == 128, "two lines");

@@ -12,6 +12,8 @@
 //! Source of the beams: interval arithmetic on packets, Wald et al. 2006, Boulos et al. 2006; of sets of
 //! rays that thin out on their way down, Wald et al. 2007.
 
+use std::ops::Range;
+
 use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block::{BLOCK, DIRECTION, FAR, INVERSE, NEAR, RayBlock, WIDE};
@@ -80,9 +82,9 @@ impl PatchSurface {
         let mut errands = std::mem::take(&mut met.errands);
         met.clear();
         let open = block.live();
-        let (far, patch) = (f32::INFINITY, u32::MAX);
+        let far = f32::INFINITY;
         let mut search: BlockSearch<'_, ANY> =
-            BlockSearch { surface: self, block, met: &mut met, open, far, patch, tests: 0 };
+            BlockSearch { surface: self, block, met: &mut met, open, far, of_patch: 0..0, tests: 0 };
         counters.nodes += self.hierarchy.walk(simd, self.root, &mut search, &mut errands);
         search.newton_all(simd);
         search.divide_rest();
@@ -236,8 +238,8 @@ struct BlockSearch<'a, const ANY: bool> {
     open: u64,
     /// How far the one looks that looks farthest.
     far: f32,
-    /// Patch of the rays that wait for Newton's method.
-    patch: u32,
+    /// Cells of the patch of the rays that wait for Newton's method.
+    of_patch: Range<u32>,
     tests: u64,
 }
 
@@ -300,9 +302,10 @@ impl<S: Simd, const ANY: bool> Bundle<S> for BlockSearch<'_, ANY> {
     #[inline(always)]
     fn cell(&mut self, simd: S, number: u32, rays: u64, sides: &[[f32; 2]; 3]) {
         let cell = &self.surface.cells[number as usize];
-        if cell.patch != self.patch {
+        // By its number, which is known before the cell is read.
+        if !self.of_patch.contains(&number) {
             self.newton_all(simd);
-            self.patch = cell.patch;
+            self.of_patch = self.surface.parts[cell.patch as usize].2.clone();
         }
         // Some may have met something before it by now.
         let rays = if ANY { rays } else { self.meet_box(simd, rays, sides) };
