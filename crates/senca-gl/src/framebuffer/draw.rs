@@ -43,6 +43,8 @@ pub(crate) struct DrawPlanes {
     pub(crate) height: u32,
     /// 0 without multisampling.
     pub(crate) samples: u32,
+    /// Planes of earlier copies, with anything in them.
+    spares: Vec<Plane>,
 }
 
 impl Framebuffers {
@@ -75,7 +77,8 @@ impl Framebuffers {
         let colors: Vec<Taken> = colors.into_iter().filter_map(|home| self.take(home)).collect();
         let depth = depth.and_then(|home| self.take(home));
         let stencil = stencil.and_then(|home| self.take(home));
-        DrawPlanes::new(colors, depth, stencil, same)
+        let spares = std::mem::take(&mut self.spares);
+        DrawPlanes { spares, ..DrawPlanes::new(colors, depth, stencil, same) }
     }
 
     fn take(&mut self, home: Home) -> Option<Taken> {
@@ -93,6 +96,7 @@ impl Framebuffers {
 
     /// Brings planes home.
     pub(crate) fn put_back(&mut self, planes: DrawPlanes) {
+        self.spares = planes.spares;
         for Taken { plane, home } in planes.colors.into_iter().chain(planes.depth).chain(planes.stencil) {
             match home {
                 Home::WindowColor(i) => self.window.colors[i] = plane,
@@ -109,8 +113,17 @@ impl DrawPlanes {
         let uses_depth = depth.as_ref().is_some_and(has_depth);
         let stencil_with_depth =
             same && depth.as_ref().is_some_and(|taken| taken.plane.format.base().has_stencil());
-        let mut planes =
-            Self { colors, depth, stencil, uses_depth, stencil_with_depth, width: 0, height: 0, samples: 0 };
+        let mut planes = Self {
+            colors,
+            depth,
+            stencil,
+            uses_depth,
+            stencil_with_depth,
+            width: 0,
+            height: 0,
+            samples: 0,
+            spares: Vec::new(),
+        };
         let area = planes.all().map(|plane| plane.area()).reduce(Area::intersect);
         planes.samples = planes.all().map(|plane| plane.samples).max().unwrap_or(0);
         if let Some(area) = area {
@@ -178,21 +191,23 @@ impl DrawPlanes {
     /// Draws: calls `draw` with the planes as a target, once for each colour plane, or once if there is none. If
     /// there are several, depth and stencil before the first are those before each. A target of several samples
     /// has twice the width and height; `draw` is told the number of samples along each side of a pixel. Without
-    /// `multisample` it gets pixels in any case, and all samples take what it draws.
+    /// `multisample` it gets pixels in any case, and all samples take what it draws; it may change those of `area` only.
     ///
     /// Returns what the last call did, the default if there is nothing to draw to.
     pub(crate) fn draw<R: Default>(
         &mut self,
         multisample: bool,
         uses: &Uses,
+        area: Area,
         mut draw: impl FnMut(Target<'_>, u32) -> R,
     ) -> R {
+        let area = area.intersect(self.area());
         let count = self.colors.len().max(1);
         let mut result = R::default();
         for i in 0..count {
             let kept = (i + 1 < count).then(|| [&self.depth, &self.stencil].map(texels_of));
             let drawn = if self.samples > 0 && !multisample {
-                self.draw_single(i, uses, &mut draw)
+                self.draw_single(i, uses, area, &mut draw)
             } else {
                 self.draw_one(i, &mut draw)
             };
@@ -265,31 +280,46 @@ impl DrawPlanes {
         &mut self,
         i: usize,
         uses: &Uses,
+        area: Area,
         draw: &mut impl FnMut(Target<'_>, u32) -> R,
     ) -> Option<R> {
+        if area.is_empty() {
+            return None;
+        }
         let mut copies = self.copies(i, 0)?;
-        copies.each_pair(self, i, |copy, plane| first_samples(plane, copy, uses));
+        copies.each_pair(self, i, |copy, plane| first_samples(plane, copy, uses, area));
         let result = copies.draw_one(0, draw)?;
         let mut changed = Vec::new();
         if uses.0.contains(&Use::Changed) {
-            changed.resize(self.width as usize * self.height as usize, false);
-            copies.each_pair(self, i, |copy, plane| mark_changes(copy, plane, uses, &mut changed));
+            changed.resize(area.columns(1).len() * area.lines(1).len(), false);
+            copies.each_pair(self, i, |copy, plane| mark_changes(copy, plane, uses, area, &mut changed));
         }
-        copies.each_pair(self, i, |copy, plane| spread(copy, plane, uses, &changed));
+        copies.each_pair(self, i, |copy, plane| spread(copy, plane, uses, area, &changed));
+        self.spares.clear();
+        let used = copies.colors.into_iter().chain(copies.depth).chain(copies.stencil);
+        self.spares.extend(used.map(|taken| taken.plane));
         Some(result)
     }
 
-    /// Planes of the size that all have in common, with colour plane `i` as the only one.
-    fn copies(&self, i: usize, samples: u32) -> Option<Self> {
+    /// Planes of the size that all have in common, with colour plane `i` as the only one. What is in them is
+    /// not said.
+    fn copies(&mut self, i: usize, samples: u32) -> Option<Self> {
         let (width, height) = (self.width, self.height);
-        let copy = |taken: &Taken| {
-            let plane = Plane::new(taken.plane.format, width, height, samples)?;
+        let mut spares = std::mem::take(&mut self.spares);
+        let mut copy = |taken: &Taken| {
+            let size = (taken.plane.format, width, height, samples);
+            let fits = |spare: &Plane| (spare.format, spare.width, spare.height, spare.samples) == size;
+            let plane = match spares.iter().position(fits) {
+                Some(spare) => spares.swap_remove(spare),
+                None => Plane::new(taken.plane.format, width, height, samples)?,
+            };
             taken.plane.is_present().then(|| Taken { plane, home: taken.home.clone() })
         };
-        let one = |taken: &Option<Taken>| taken.as_ref().map(copy).map_or(Some(None), |copy| copy.map(Some));
-        let colors = self.colors.get(i).map(copy).into_iter().collect::<Option<Vec<_>>>()?;
+        let mut one =
+            |taken: &Option<Taken>| taken.as_ref().map(&mut copy).map_or(Some(None), |copy| copy.map(Some));
         let (depth, stencil) = (one(&self.depth)?, one(&self.stencil)?);
-        Some(Self { colors, depth, stencil, samples, ..*self })
+        let colors = self.colors.get(i).map(copy).into_iter().collect::<Option<Vec<_>>>()?;
+        Some(Self { colors, depth, stencil, samples, spares: Vec::new(), ..*self })
     }
 
     /// Calls `act` with each plane of copies and the one it is a copy of.
@@ -356,53 +386,67 @@ macro_rules! for_values {
 /// Rows of pixels that a thread takes at once.
 const ROWS: usize = 32;
 
-/// Copies the first sample of each pixel.
-fn first_samples(from: &Plane, to: &mut Plane, uses: &Uses) {
+/// Texels of the rows of pixels that an area has.
+fn span(plane: &Plane, area: Area) -> Range<usize> {
+    let lines = area.lines(plane.side());
+    plane.at(0, lines.start)..plane.at(0, lines.end)
+}
+
+/// Copies the first sample of each pixel of an area.
+fn first_samples(from: &Plane, to: &mut Plane, uses: &Uses, area: Area) {
     let (width, stride) = (to.stride(), 2 * from.stride());
-    let (one, four) = (to.range(), from.range());
+    let (one, four) = (span(to, area), span(from, area));
+    let (ones, fours) = (area.columns(1), area.columns(2));
     for_values!(&*from.texels, to.texels_mut(), |a, b, of| {
         if uses.0[of] == Use::Changed {
             let rows = b[one.clone()].par_chunks_mut(width).zip(a[four.clone()].par_chunks(stride));
             rows.with_min_len(ROWS).for_each(|(to, from)| {
-                to.iter_mut().zip(from.as_chunks::<2>().0).for_each(|(to, from)| *to = from[0]);
+                let pixels = from[fours.clone()].as_chunks::<2>().0;
+                to[ones.clone()].iter_mut().zip(pixels).for_each(|(to, from)| *to = from[0]);
             });
         }
     });
 }
 
-/// Marks the pixels that are not what the first sample of `four` is.
-fn mark_changes(one: &Plane, four: &Plane, uses: &Uses, changed: &mut [bool]) {
+/// Marks the pixels of an area that are not what the first sample of `four` is.
+fn mark_changes(one: &Plane, four: &Plane, uses: &Uses, area: Area, changed: &mut [bool]) {
     let (width, stride) = (one.stride(), 2 * four.stride());
+    let (ones, fours) = (area.columns(1), area.columns(2));
     for_values!(&*one.texels, &*four.texels, |a, b, of| {
         if uses.0[of] == Use::Changed {
-            let rows = a[one.range()].par_chunks(width).zip(b[four.range()].par_chunks(stride));
-            let rows = rows.zip(changed.par_chunks_mut(width));
+            let rows = a[span(one, area)].par_chunks(width).zip(b[span(four, area)].par_chunks(stride));
+            let rows = rows.zip(changed.par_chunks_mut(ones.len()));
             rows.with_min_len(ROWS).for_each(|((new, old), changed)| {
-                let pixels = new.iter().zip(old.as_chunks::<2>().0);
+                let pixels = new[ones.clone()].iter().zip(old[fours.clone()].as_chunks::<2>().0);
                 changed.iter_mut().zip(pixels).for_each(|(changed, (new, old))| *changed |= *new != old[0]);
             });
         }
     });
 }
 
-/// Copies pixels to all their samples: those that have changed, or all where all are set.
-fn spread(from: &Plane, to: &mut Plane, uses: &Uses, changed: &[bool]) {
+/// Copies pixels of an area to all their samples: those that have changed, or all where all are set.
+fn spread(from: &Plane, to: &mut Plane, uses: &Uses, area: Area, changed: &[bool]) {
     let (width, stride) = (from.stride(), to.stride());
-    let (one, four) = (from.range(), to.range());
+    let (one, four) = (span(from, area), span(to, area));
+    let (ones, fours) = (area.columns(1), area.columns(2));
     for_values!(&*from.texels, to.texels_mut(), |a, b, of| {
         let rows = b[four.clone()].par_chunks_mut(2 * stride).zip(a[one.clone()].par_chunks(width));
+        let rows = rows.with_min_len(ROWS);
         match uses.0[of] {
             Use::Kept => {}
-            Use::Cleared => rows.with_min_len(ROWS).for_each(|(to, from)| {
+            Use::Cleared => rows.for_each(|(to, from)| {
                 let (upper, lower) = to.split_at_mut(stride);
-                upper.as_chunks_mut::<2>().0.iter_mut().zip(from).for_each(|(to, from)| *to = [*from; 2]);
+                let (upper, lower) = (&mut upper[fours.clone()], &mut lower[fours.clone()]);
+                let pixels = upper.as_chunks_mut::<2>().0.iter_mut().zip(&from[ones.clone()]);
+                pixels.for_each(|(to, from)| *to = [*from; 2]);
                 lower.copy_from_slice(upper);
             }),
             Use::Changed => {
-                let rows = rows.zip(changed.par_chunks(width)).filter(|(_, changed)| changed.contains(&true));
-                rows.for_each(|((to, from), changed)| {
+                let rows = rows.zip(changed.par_chunks(ones.len()));
+                rows.filter(|(_, changed)| changed.contains(&true)).for_each(|((to, from), changed)| {
                     for to in to.chunks_exact_mut(stride) {
-                        let pixels = to.as_chunks_mut::<2>().0.iter_mut().zip(from).zip(changed);
+                        let to = to[fours.clone()].as_chunks_mut::<2>().0;
+                        let pixels = to.iter_mut().zip(&from[ones.clone()]).zip(changed);
                         pixels.filter(|(_, changed)| **changed).for_each(|((to, from), _)| *to = [*from; 2]);
                     }
                 });

@@ -122,6 +122,8 @@ pub(crate) struct Framebuffers {
     /// The window's buffers to draw to and read from.
     pub(crate) window_draw: Enum,
     pub(crate) window_read: Enum,
+    /// Planes that copies of pixels are made in; what is in them does not matter.
+    pub(crate) spares: Vec<Plane>,
 }
 
 impl Framebuffers {
@@ -137,6 +139,7 @@ impl Framebuffers {
             renderbuffer: None,
             window_draw: buffer,
             window_read: buffer,
+            spares: Vec::new(),
         }
     }
 

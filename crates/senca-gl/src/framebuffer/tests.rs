@@ -533,6 +533,54 @@ fn without_multisampling_pixels_are_whole() {
     assert!(found.iter().filter(|red| **red == 255).count() >= 28);
 }
 
+/// Pictures of 16 x 16 pixels in a framebuffer of some number of samples without multisampling: two triangles in
+/// parts of it, by viewport or scissor, one with a clear before it, a line and a large point.
+fn parts(samples: i32, scissors: bool) -> Vec<u8> {
+    let mut c = context(16, 16);
+    object(&mut c, [16, 16], samples);
+    c.disable(gl::MULTISAMPLE);
+    c.enable(gl::DEPTH_TEST);
+    c.depth_func(gl::LEQUAL);
+    c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+    for (k, [x, y]) in [[1, 2], [7, 5]].into_iter().enumerate() {
+        if scissors {
+            c.enable(gl::SCISSOR_TEST);
+            c.scissor(x, y, 8, 9);
+        } else {
+            c.viewport(x, y, 8, 9);
+        }
+        if k == 1 {
+            c.clear(gl::DEPTH_BUFFER_BIT);
+        }
+        c.color([1.0 - 0.5 * k as f32, 0.0, 0.0]);
+        c.begin(gl::TRIANGLES);
+        [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0f32]].into_iter().for_each(|v| c.vertex(v));
+        c.end();
+        c.finish();
+    }
+    c.point_size(5.0);
+    for mode in [gl::LINES, gl::POINTS] {
+        c.color([0.3, 0.0, 0.0]);
+        c.begin(mode);
+        [[-0.9, -0.9], [0.9, 0.8f32]].into_iter().for_each(|v| c.vertex(v));
+        c.end();
+    }
+    c.disable(gl::SCISSOR_TEST);
+    c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, 0);
+    c.blit_framebuffer([0, 0, 16, 16], [0, 0, 16, 16], gl::COLOR_BUFFER_BIT, gl::NEAREST);
+    c.bind_framebuffer(gl::READ_FRAMEBUFFER, 0);
+    reds(&mut c, [16, 16])
+}
+
+#[test]
+fn without_multisampling_samples_follow_their_pixels_in_every_part() {
+    for scissors in [false, true] {
+        let single = parts(0, scissors);
+        assert!(single.iter().filter(|red| **red == 255).count() > 9);
+        assert_eq!(parts(4, scissors), single);
+    }
+}
+
 #[test]
 fn a_texture_is_depth_and_stencil_at_once() {
     let mut c = context(2, 2);

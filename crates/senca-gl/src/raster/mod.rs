@@ -3,7 +3,7 @@
 mod shading;
 
 use crate::fragment::Program;
-use crate::framebuffer::{DrawPlanes, Use, Uses, WaitingClear};
+use crate::framebuffer::{Area, DrawPlanes, Use, Uses, WaitingClear};
 use crate::raster_state::{Batch, Kind, RasterState};
 use crate::state::Cap;
 use crate::{Context, Enum, gl};
@@ -34,7 +34,8 @@ impl Context {
             return passed;
         }
         let uses = uses(batches, clear.as_ref());
-        let passed = planes.draw(multisample, &uses, |mut target, side| {
+        let area = if clear.is_some() { planes.area() } else { area_of_all(batches) };
+        let passed = planes.draw(multisample, &uses, area, |mut target, side| {
             draw(rasterizer, &mut target, batches, side, clear).passed
         });
         self.framebuffers.put_back(planes);
@@ -100,6 +101,23 @@ fn rows_of(batch: &Batch) -> std::ops::Range<u32> {
     }
     let rim = batch.state.line.width.max(batch.state.point.size).max(1.0) + 2.0;
     (low - rim).max(0.0) as u32..(high + rim).max(0.0) as u32
+}
+
+/// An area that has all pixels batches may change.
+fn area_of_all(batches: &[Batch]) -> Area {
+    let all = Area::of([0, 0, i32::MAX, i32::MAX]);
+    let join = |a: Area, b: Area| match (a.is_empty(), b.is_empty()) {
+        (true, _) => b,
+        (_, true) => a,
+        _ => Area { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) },
+    };
+    let of = |batch: &Batch| {
+        let s = &batch.state;
+        let view = if batch.kind == Kind::Triangles { Area::of(s.viewport.rect) } else { all };
+        let view = view.intersect(all);
+        if s.has(Cap::ScissorTest) { view.intersect(Area::of(s.scissor)) } else { view }
+    };
+    batches.iter().map(of).reduce(join).unwrap_or(all)
 }
 
 /// Draws batches into a target that has a square of `side` samples along each side of a pixel.
