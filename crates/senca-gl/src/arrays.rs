@@ -683,9 +683,14 @@ impl Context {
         let mut out = Vec::new();
         out.try_reserve_exact(count).map_err(|_| gl::OUT_OF_MEMORY)?;
         let mut read = |bytes: &[u8]| {
-            for k in 0..count {
-                if let Some(bytes) = bytes.get(k * step..k * step + element) {
-                    out.push(make(element_of(bytes, a.kind, normalized)));
+            let elements = (0..count).map_while(|k| bytes.get(k * step..));
+            match (a.kind, a.size) {
+                (gl::FLOAT, 2) => out.extend(elements.map_while(floats::<2>).map(&make)),
+                (gl::FLOAT, 3) => out.extend(elements.map_while(floats::<3>).map(&make)),
+                (gl::FLOAT, 4) => out.extend(elements.map_while(floats::<4>).map(&make)),
+                _ => {
+                    let whole = elements.map_while(|bytes| bytes.get(..element));
+                    out.extend(whole.map(|bytes| make(element_of(bytes, a.kind, normalized))));
                 }
             }
         };
@@ -750,6 +755,16 @@ fn allowed(name: Enum) -> (std::ops::RangeInclusive<i32>, &'static [Enum]) {
         gl::EDGE_FLAG_ARRAY => (1..=1, &[UNSIGNED_BYTE]),
         _ => (1..=1, &[UNSIGNED_BYTE, SHORT, INT, FLOAT, DOUBLE]),
     }
+}
+
+/// As [`element_of`], of `N` floats.
+#[inline]
+fn floats<const N: usize>(bytes: &[u8]) -> Option<[f32; 4]> {
+    let mut out = [0.0, 0.0, 0.0, 1.0];
+    for (to, from) in out.iter_mut().zip(bytes.as_chunks::<4>().0.first_chunk::<N>()?) {
+        *to = f32::from_ne_bytes(*from);
+    }
+    Some(out)
 }
 
 /// The components of an element.
@@ -840,6 +855,18 @@ mod tests {
         let f = Interleaved::of(gl::T4F_C4F_N3F_V4F).unwrap();
         assert_eq!((f.normal, f.vertex, f.bytes), (Some((3, gl::FLOAT, 32)), (4, gl::FLOAT, 44), 60));
         assert!(Interleaved::of(gl::FLOAT).is_none());
+    }
+
+    #[test]
+    fn floats_are_read_as_elements_of_any_type_are() {
+        let bytes: Vec<u8> =
+            [1.5f32, -2.0, f32::NAN, 0.1, 7.0].iter().flat_map(|v| v.to_ne_bytes()).collect();
+        let bits = |v: [f32; 4]| v.map(f32::to_bits);
+        let plain = |n: usize| bits(element_of(&bytes[..4 * n], gl::FLOAT, true));
+        assert_eq!(floats::<2>(&bytes).map(bits), Some(plain(2)));
+        assert_eq!(floats::<3>(&bytes).map(bits), Some(plain(3)));
+        assert_eq!(floats::<4>(&bytes).map(bits), Some(plain(4)));
+        assert_eq!(floats::<3>(&bytes[..11]), None);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::stage::FragmentStage;
 use crate::target::{Clear, Target};
 use crate::texture::{Sampler, Texture};
+use fearless_simd::Level;
 use senca_math::glam::Vec4;
 
 /// Largest number of varyings a vertex may carry: two colours, a fog coordinate and eight places in textures.
@@ -570,7 +571,7 @@ pub trait Rasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        crate::lines::draw_lines(target, lines, state, shading, self.threads())
+        crate::lines::draw_lines(target, lines, state, shading, (self.threads(), Level::baseline()))
     }
 
     /// Draws points as squares, in order.
@@ -581,7 +582,7 @@ pub trait Rasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        crate::lines::draw_points(target, points, state, shading, self.threads())
+        crate::lines::draw_points(target, points, state, shading, (self.threads(), Level::baseline()))
     }
 
     /// Threads that lines and points are drawn on. Default 1: one fragment after another.

@@ -17,12 +17,14 @@ use crate::api::{
     Counters, Interpolation, LANES, LineStipple, Primitives, Shading, State, StippleJoins, StrokeRule,
 };
 use crate::assemble::{varyings_of, vertex_count};
+use crate::blend::pack;
 use crate::clip::{VIEW_VOLUME, clip_line, wholly_outside};
 use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, ceil_div};
 use crate::shade::source_color;
 use crate::sink::Sink;
 use crate::smooth;
 use crate::target::{Target, rgba8_from_rgba};
+use fearless_simd::{Level, Simd, dispatch, f32x16, i32x16, prelude::*, u32x16};
 use rayon::prelude::*;
 use senca_math::glam::Vec4;
 use std::ops::Range;
@@ -39,26 +41,26 @@ const WORTH_SHARING: usize = 128;
 /// Strips for each thread, so that one with little in it does not leave a thread idle.
 const STRIPS_PER_THREAD: usize = 4;
 
-/// Draws lines on `threads` threads.
+/// Draws lines on a number of threads, with the vector instructions of a level.
 pub(crate) fn draw_lines(
     target: &mut Target<'_>,
     lines: &Primitives<'_>,
     state: &State,
     shading: &Shading<'_>,
-    threads: usize,
+    (threads, level): (usize, Level),
 ) -> Counters {
-    draw::<2, Line>(target, lines, state, shading, threads)
+    draw::<2, Line>(target, lines, state, shading, (threads, level))
 }
 
-/// Draws points on `threads` threads.
+/// Draws points likewise.
 pub(crate) fn draw_points(
     target: &mut Target<'_>,
     points: &Primitives<'_>,
     state: &State,
     shading: &Shading<'_>,
-    threads: usize,
+    (threads, level): (usize, Level),
 ) -> Counters {
-    draw::<1, Square>(target, points, state, shading, threads)
+    draw::<1, Square>(target, points, state, shading, (threads, level))
 }
 
 /// What strokes are made with.
@@ -83,7 +85,7 @@ pub(crate) trait Stroke<const N: usize>: Sized + Send + Sync {
 
     /// Hands those of its fragments to `sink` that are in the sink's rows. `values` are the varyings of
     /// its corners, `stipple` how far the pattern is at its start.
-    fn draw(&self, sink: &mut Sink<'_, '_>, values: [&[f32]; N], stipple: u64);
+    fn draw<S: Simd>(&self, simd: S, sink: &mut Sink<'_, '_>, values: [&[f32]; N], stipple: u64);
 }
 
 /// What became of a primitive.
@@ -98,7 +100,7 @@ pub(crate) fn draw<const N: usize, S: Stroke<N>>(
     primitives: &Primitives<'_>,
     state: &State,
     shading: &Shading<'_>,
-    threads: usize,
+    (threads, level): (usize, Level),
 ) -> Counters {
     crate::pixel::clear_in_scissor(target, state);
     let map = ScreenMap::new(target.width, target.height, state);
@@ -130,21 +132,45 @@ pub(crate) fn draw<const N: usize, S: Stroke<N>>(
         let rows: Vec<[i32; 2]> = prepared.iter().map(|p| p.rows(map.bounds.y1)).collect();
         counters += in_strips(target, threads, |strip, first_row| {
             let mut sink = Sink::new(strip, first_row, state, shading, &map);
-            let [top, bottom] = [sink.bounds.y0, sink.bounds.y1];
-            for (n, &[first, end]) in rows.iter().enumerate() {
-                if first >= bottom || end <= top {
-                    continue;
-                }
-                if let Prepared::Ready { stroke, .. } = &prepared[n] {
-                    sink.begin(primitives.ids.of(r * RUN + n), true, primitives.stride);
-                    let values = run[n].map(|i| varyings_of(primitives, i));
-                    stroke.draw(&mut sink, values, starts.get(n).copied().unwrap_or(0));
-                }
-            }
+            let strip =
+                Strip { primitives, run, first: r * RUN, prepared: &prepared, rows: &rows, starts: &starts };
+            dispatch!(level, simd => strip.draw(simd, &mut sink));
             sink.counters
         });
     }
     counters
+}
+
+/// What is drawn into one strip: a run of primitives.
+struct Strip<'a, const N: usize, S> {
+    primitives: &'a Primitives<'a>,
+    run: &'a [[u32; N]],
+    /// Number of the first of them.
+    first: usize,
+    prepared: &'a [Prepared<S>],
+    rows: &'a [[i32; 2]],
+    /// How far the stipple pattern is; empty without one.
+    starts: &'a [u64],
+}
+
+impl<const N: usize, S: Stroke<N>> Strip<'_, N, S> {
+    #[inline(always)]
+    fn draw<L: Simd>(&self, simd: L, sink: &mut Sink<'_, '_>) {
+        let [top, bottom] = [sink.bounds.y0, sink.bounds.y1];
+        for (n, &[first, end]) in self.rows.iter().enumerate() {
+            if first >= bottom || end <= top {
+                continue;
+            }
+            if let Prepared::Ready { stroke, .. } = &self.prepared[n] {
+                sink.begin(self.primitives.ids.of(self.first + n), true, self.primitives.stride);
+                let mut values = [[].as_slice(); N];
+                for (values, i) in values.iter_mut().zip(&self.run[n]) {
+                    *values = varyings_of(self.primitives, *i);
+                }
+                stroke.draw(simd, sink, values, self.starts.get(n).copied().unwrap_or(0));
+            }
+        }
+    }
 }
 
 impl<S> Prepared<S> {
@@ -264,6 +290,8 @@ struct Walk {
     /// Start in sub-pixels along and across, and the way to the end.
     start: [i64; 2],
     way: [i64; 2],
+    /// First pixels across at the first step and at the last one.
+    ends: [i64; 2],
 }
 
 impl Stroke<2> for Line {
@@ -290,9 +318,8 @@ impl Stroke<2> for Line {
         if self.walk.count == 0 {
             return 0..0;
         }
-        let last = self.walk.at(self.walk.count - 1);
-        let (a, b) =
-            if self.walk.along_x { (self.walk.at(0).1, last.1) } else { (self.walk.at(0).0, last.0) };
+        let (first, last) = (self.walk.along(0), self.walk.along(self.walk.count - 1));
+        let [a, b] = if self.walk.along_x { self.walk.ends } else { [first, last] };
         let high = if self.walk.along_x { self.walk.width } else { 1 };
         a.min(b) + self.origin[1]..a.max(b) + high + self.origin[1]
     }
@@ -301,7 +328,8 @@ impl Stroke<2> for Line {
         self.walk.count as u64
     }
 
-    fn draw(&self, sink: &mut Sink<'_, '_>, values: [&[f32]; 2], stipple: u64) {
+    #[inline(always)]
+    fn draw<S: Simd>(&self, simd: S, sink: &mut Sink<'_, '_>, values: [&[f32]; 2], stipple: u64) {
         let interpolation = sink.state.interpolation;
         let along = usize::from(!self.walk.along_x);
         let at = |x: i32, y: i32, out: &mut [f32]| {
@@ -317,7 +345,7 @@ impl Stroke<2> for Line {
         };
         match &self.outline {
             Some(outline) => self.draw_smooth(sink, outline, stipple, &at),
-            None if self.draw_plain(sink, values) => return,
+            None if self.draw_plain(simd, sink, values) => return,
             None => self.draw_steps(sink, stipple, &at),
         }
         sink.end(&at);
@@ -327,7 +355,8 @@ impl Stroke<2> for Line {
 impl Line {
     /// Draws a line one pixel wide, in plain colours and wholly within the bounds but for rows, as most
     /// are; whether it is one.
-    fn draw_plain(&self, sink: &mut Sink<'_, '_>, values: [&[f32]; 2]) -> bool {
+    #[inline(always)]
+    fn draw_plain<S: Simd>(&self, simd: S, sink: &mut Sink<'_, '_>, values: [&[f32]; 2]) -> bool {
         let (walk, state, b) = (&self.walk, sink.state, sink.bounds);
         if walk.width != 1 || state.stipple.is_some() {
             return false;
@@ -337,10 +366,7 @@ impl Line {
         if steps.is_empty() {
             return true;
         }
-        let column = |step: i64| {
-            let (a, b) = walk.at(step);
-            if walk.along_x { a + ox } else { b + ox }
-        };
+        let column = |step: i64| if walk.along_x { walk.along(step) + ox } else { walk.across(step) + ox };
         let inside = |x: i64| x >= i64::from(b.x0) && x < i64::from(b.x1);
         if !inside(column(steps.start)) || !inside(column(steps.end - 1)) {
             return false;
@@ -351,56 +377,70 @@ impl Line {
             Interpolation::FlatLast => [values[1]; 2],
             _ => values,
         };
-        let [from, to] = ends.map(|values| source_color(&plain.color, values));
-        let way: [f32; 4] = std::array::from_fn(|k| to[k] - from[k]);
+        let [from, to] = [source_color(&plain.color, ends[0]), source_color(&plain.color, ends[1])];
         let screen_space = state.interpolation == Interpolation::Screen;
+        // From pixel to pixel along, and from one to the next across.
+        let (along, aside) = (walk.sign, plain.width as i64);
+        let (along, aside) = if walk.along_x { (along, aside) } else { (along * aside, 1) };
         let mut across = Across::new(walk, steps.start);
         let mut step = steps.start;
-        // Many steps at a time, each calculation a loop of its own.
+        let (a, b) = (walk.along(step), across.pixel);
+        let (x, y) = if walk.along_x { (a, b) } else { (b, a) };
+        let mut pixel = (y + oy - plain.first_row as i64) * plain.width as i64 + x + ox;
         while step < steps.end {
             let count = (steps.end - step).min(LANES as i64) as usize;
-            let (mut at, mut runs) = ([0usize; LANES], [0i32; LANES]);
-            for (at, run) in at.iter_mut().zip(&mut runs).take(count) {
-                let (a, b) = (walk.first + walk.sign * step, across.pixel);
+            let mut at = [0usize; LANES];
+            for at in &mut at[..count] {
+                *at = pixel as usize;
+                let before = across.pixel;
                 across.advance();
-                step += 1;
-                let (x, y) = if walk.along_x { (a, b) } else { (b, a) };
-                *at = ((y + oy) as usize - plain.first_row) * plain.width + (x + ox) as usize;
-                *run = walk.run(a) as i32;
+                pixel += along + (across.pixel - before) * aside;
             }
-            let shares = runs.map(|run| walk.share_of(run));
-            let colors = self.plain_colors(&shares, screen_space, &from, &way);
-            for i in 0..count {
-                let depth = if plain.depth.is_some() { self.depth(shares[i]) } else { 0.0 };
-                plain.put(at[i], depth, state, colors[i]);
+            let shares = walk.shares(simd, walk.along(step));
+            let mut colors = [0; LANES];
+            self.plain_colors(simd, shares, screen_space, &from, &to).store_array(&mut colors);
+            if plain.depth.is_none() {
+                for (at, color) in at[..count].iter().zip(&colors) {
+                    plain.put(*at, 0.0, state, color.to_le_bytes());
+                }
+            } else {
+                let shares = shares.to_array();
+                for (k, at) in at[..count].iter().enumerate() {
+                    plain.put(*at, self.depth(shares[k]), state, colors[k].to_le_bytes());
+                }
             }
+            step += count as i64;
         }
         true
     }
 
-    /// Colours at shares of the way, in 8 bits; `from` and `way` are of the whole line.
+    /// Colours at shares of the way, packed; `from` and `to` are those of the whole line. Shares become
+    /// parameters as by [`Self::parameter`].
     #[inline(always)]
-    fn plain_colors(
+    fn plain_colors<S: Simd>(
         &self,
-        shares: &[f32; LANES],
+        simd: S,
+        shares: f32x16<S>,
         screen_space: bool,
         from: &[f32; 4],
-        way: &[f32; 4],
-    ) -> [[u8; 4]; LANES] {
-        let parameters = shares.map(|t| self.parameter(t, screen_space));
-        let mut words = [0u32; LANES];
+        to: &[f32; 4],
+    ) -> u32x16<S> {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let ([t0, t1], q0, q1) = (self.part, self.start.inv_w, self.end.inv_w);
+        let s = if screen_space || q0 == q1 {
+            shares
+        } else {
+            shares * splat(q1) / (splat(q0) + shares * splat(q1 - q0))
+        };
+        let parameters = splat(t0) + s * splat(t1 - t0);
+        let mut rgba = [splat(0.0); 4];
         for k in 0..4 {
-            let (from, way) = (from[k], way[k]);
-            for (word, parameter) in words.iter_mut().zip(&parameters) {
-                let v = from + parameter * way;
-                let low = if v > 0.0 { v } else { 0.0 };
-                let clamped = if low < 1.0 { low } else { 1.0 };
-                *word |= ((clamped * 255.0 + 0.5) as i32 as u32) << (8 * k);
-            }
+            rgba[k] = splat(from[k]) + parameters * splat(to[k] - from[k]);
         }
-        words.map(u32::to_le_bytes)
+        pack(simd, rgba)
     }
 
+    #[inline(never)]
     fn draw_steps(&self, sink: &mut Sink<'_, '_>, stipple: u64, values: &impl Fn(i32, i32, &mut [f32])) {
         let walk = &self.walk;
         let rows = i64::from(sink.bounds.y0) - self.origin[1]..i64::from(sink.bounds.y1) - self.origin[1];
@@ -421,6 +461,7 @@ impl Line {
         }
     }
 
+    #[inline(never)]
     fn draw_smooth(
         &self,
         sink: &mut Sink<'_, '_>,
@@ -439,11 +480,13 @@ impl Line {
         });
     }
 
+    #[inline(always)]
     fn depth(&self, t: f32) -> f32 {
         (self.start.z + t * (self.end.z - self.start.z)).clamp(0.0, 1.0)
     }
 
     /// Parameter of the submitted line.
+    #[inline(always)]
     fn parameter(&self, t: f32, screen_space: bool) -> f32 {
         let [t0, t1] = self.part;
         let (q0, q1) = (self.start.inv_w, self.end.inv_w);
@@ -479,9 +522,13 @@ impl Walk {
         let bits = sub.trailing_zeros();
         let first = sign * shift_up(sign * (start[0] - half), bits);
         let count = (shift_up(sign * (start[0] + way[0] - half), bits) - sign * first).max(0);
-        let mut walk = Self { along_x, width: whole_size(width), sub, first, sign, count, start, way };
+        let (width, ends) = (whole_size(width), [0; 2]);
+        let mut walk = Self { along_x, width, sub, first, sign, count, start, way, ends };
         if fine && sign != 0 {
             walk.leave_diamonds();
+        }
+        if walk.count > 0 {
+            walk.ends = [0, walk.count - 1].map(|step| walk.at(step).1);
         }
         walk
     }
@@ -516,6 +563,21 @@ impl Walk {
         a * self.sub + self.sub / 2 - self.start[0]
     }
 
+    /// The shares of the way to the end at 16 pixels from `a` on, of a line that has pixels; see
+    /// [`Self::share_of`].
+    #[inline(always)]
+    fn shares<S: Simd>(&self, simd: S, a: i64) -> f32x16<S> {
+        let mut runs = [0i32; LANES];
+        for (k, run) in runs.iter_mut().enumerate() {
+            *run = (self.run(a) as i32).wrapping_add(k as i32 * (self.sign * self.sub) as i32);
+        }
+        let runs: f32x16<S> = i32x16::load_array_ref(simd, &runs).to_float();
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        let share = runs / f32x16::splat(simd, self.way[0] as f32);
+        let low = share.simd_gt(zero).select(share, zero);
+        low.simd_lt(one).select(low, one)
+    }
+
     /// The share of the way to the end of a run.
     #[inline(always)]
     fn share_of(&self, run: i32) -> f32 {
@@ -535,18 +597,31 @@ impl Walk {
             - (self.width - 1) * (self.sub / 2) * length.abs()
     }
 
+    /// Pixel along.
+    #[inline(always)]
+    fn along(&self, step: i64) -> i64 {
+        self.first + self.sign * step
+    }
+
+    /// First pixel across, of a step of the line.
+    #[inline(always)]
+    fn across(&self, step: i64) -> i64 {
+        match step {
+            0 => self.ends[0],
+            _ if step == self.count - 1 => self.ends[1],
+            _ => self.at(step).1,
+        }
+    }
+
     /// Pixel along and first pixel across.
     fn at(&self, step: i64) -> (i64, i64) {
-        let a = self.first + self.sign * step;
+        let a = self.along(step);
         (a, self.offset(a).div_euclid((self.sub * self.way[0].abs()).max(1)))
     }
 
     /// The steps that have pixels in `rows`, counted from the origin.
     fn steps_in(&self, rows: &Range<i64>) -> Range<i64> {
-        let first_row = |step: i64| {
-            let (a, b) = self.at(step);
-            if self.along_x { b } else { a }
-        };
+        let first_row = |step: i64| if self.along_x { self.across(step) } else { self.along(step) };
         let high = if self.along_x { self.width } else { 1 };
         if self.count > 0 {
             let (a, b) = (first_row(0), first_row(self.count - 1));
@@ -589,18 +664,20 @@ struct Across {
 }
 
 impl Across {
+    #[inline(always)]
     fn new(walk: &Walk, step: i64) -> Self {
         let [length, across] = walk.way;
         let whole = (walk.sub * length.abs()).max(1);
-        let offset = walk.offset(walk.first + walk.sign * step);
+        let pixel = walk.across(step);
+        let rest = walk.offset(walk.along(step)) - pixel * whole;
+        // No more than one pixel across for each along.
         let change = walk.sub * across;
-        Self {
-            pixel: offset.div_euclid(whole),
-            rest: offset.rem_euclid(whole),
-            step: change.div_euclid(whole),
-            step_rest: change.rem_euclid(whole),
-            whole,
-        }
+        let (step, step_rest) = match change {
+            _ if change < 0 => (-1, change + whole),
+            _ if change >= whole => (1, change - whole),
+            _ => (0, change),
+        };
+        Self { pixel, rest, step, step_rest, whole }
     }
 
     #[inline(always)]
@@ -658,7 +735,8 @@ impl Stroke<1> for Square {
         self.first[1]..self.first[1] + self.side
     }
 
-    fn draw(&self, sink: &mut Sink<'_, '_>, [values]: [&[f32]; 1], _: u64) {
+    #[inline(always)]
+    fn draw<S: Simd>(&self, _: S, sink: &mut Sink<'_, '_>, [values]: [&[f32]; 1], _: u64) {
         let same = |_: i32, _: i32, out: &mut [f32]| out.copy_from_slice(&values[..out.len()]);
         if let Some((centre, diameter)) = self.disc {
             smooth::for_each_pixel(&smooth::disc(centre, diameter), sink.bounds, |pixel, coverage| {

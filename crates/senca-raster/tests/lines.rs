@@ -3,7 +3,8 @@
 use senca_math::glam::Vec4;
 use senca_raster::{
     Blend, Buffers, ColorPlane, Compare, Factor, Ids, Interpolation, LineStipple, Primitives, Rasterizer,
-    ScanlineRasterizer, Shading, State, StippleJoins, StrokeRule, Target, TiledRasterizer, TiledSettings,
+    ScanlineRasterizer, Shading, SimdLevel, State, StippleJoins, StrokeRule, Target, TiledRasterizer,
+    TiledSettings,
 };
 
 const SIDE: u32 = 16;
@@ -297,18 +298,19 @@ fn plain_colours_take_the_short_way_to_the_same_pixels() {
         State { interpolation: Interpolation::Screen, depth_write: false, ..State::default() },
     ];
     for state in states {
-        let draw = |blend: Option<Blend>| {
+        let draw = |blend: Option<Blend>, level: SimdLevel| {
             let (mut color, mut depth) = (vec![[7u8; 4]; 61 * 47], vec![1f32; 61 * 47]);
             let mut target = Target::new(61, 47)
                 .and_then(|t| t.with_color(ColorPlane::Rgba8(&mut color)))
                 .and_then(|t| t.with_depth(&mut depth))
                 .unwrap();
             let state = State { blend, ..state };
-            let mut rasterizer = TiledRasterizer::default();
+            let mut rasterizer = TiledRasterizer::new(TiledSettings { level, ..TiledSettings::default() });
             let lines = rasterizer.draw_lines(&mut target, &p, &state, &Shading::vertex_rgb());
             let points = rasterizer.draw_points(&mut target, &p, &state, &Shading::vertex_rgb());
             (color, depth, lines, points)
         };
-        assert!(draw(None) == draw(Some(same)));
+        let expected = draw(Some(same), SimdLevel::baseline());
+        assert!([SimdLevel::baseline(), SimdLevel::new()].iter().all(|level| draw(None, *level) == expected));
     }
 }
