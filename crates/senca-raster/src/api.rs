@@ -84,6 +84,8 @@ pub struct State {
     /// Clears the target (inside the scissor) before the first primitive; cheaper than a separate
     /// [`Target::clear`]. Default: no clearing.
     pub clear: Option<Clear>,
+    /// Pixels that [`Self::clear`] clears, of those inside the scissor. Default: all.
+    pub clear_area: Option<Rect>,
     /// Width of lines in pixels, at least 1. Default: 1.
     pub line_width: f32,
     /// Side of points in pixels, at least 1. Default: 1.
@@ -152,6 +154,7 @@ impl Default for State {
             interpolation: Interpolation::Perspective,
             blend: None,
             clear: None,
+            clear_area: None,
             line_width: 1.0,
             point_size: 1.0,
             point_sizes: None,

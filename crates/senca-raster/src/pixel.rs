@@ -1,7 +1,7 @@
 //! Single pixels of a target: the depth test, the blending and the writing, the plain form.
 
 use crate::api::{Blend, Factor, State};
-use crate::setup::scissor_bounds;
+use crate::setup::{Bounds, scissor_bounds};
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
 
 fn index(target: &Target<'_>, x: i32, y: i32) -> usize {
@@ -84,14 +84,20 @@ fn factor(factor: Factor, new: [f32; 4], old: [f32; 4]) -> [f32; 4] {
     }
 }
 
+/// The pixels that [`State::clear`] clears.
+pub(crate) fn clear_bounds(target: &Target<'_>, state: &State) -> Bounds {
+    let bounds = scissor_bounds(target.width, target.height, state);
+    state.clear_area.map_or(bounds, |area| bounds.intersect(Bounds::of_rect(area)))
+}
+
 /// Does [`State::clear`].
 pub(crate) fn clear_in_scissor(target: &mut Target<'_>, state: &State) {
     let Some(clear) = state.clear else { return };
-    if state.scissor.is_none() {
+    let bounds = clear_bounds(target, state);
+    if bounds == target.bounds() {
         target.clear(&clear);
         return;
     }
-    let bounds = scissor_bounds(target.width, target.height, state);
     for y in bounds.y0..bounds.y1 {
         if bounds.x0 < bounds.x1 {
             let row = index(target, bounds.x0, y)..index(target, bounds.x1 - 1, y) + 1;

@@ -184,6 +184,11 @@ impl<'a> Target<'a> {
         (0..height.div_ceil(rows)).map(strip).collect()
     }
 
+    /// All pixels.
+    pub(crate) fn bounds(&self) -> Bounds {
+        Bounds { x0: 0, y0: 0, x1: self.width as i32, y1: self.height as i32 }
+    }
+
     fn check(&self, found: usize) -> Result<(), TargetError> {
         let expected = self.width as usize * self.height as usize;
         if found == expected { Ok(()) } else { Err(TargetError::PlaneSize { expected, found }) }
@@ -235,8 +240,7 @@ impl<'a> Target<'a> {
     /// Fills the planes inside a rectangle: of colours the components in `masks.color`, of stencil
     /// values the bits in `masks.stencil`.
     pub fn clear_masked(&mut self, clear: &Clear, area: Rect, masks: &ClearMasks) {
-        let whole = Bounds { x0: 0, y0: 0, x1: self.width as i32, y1: self.height as i32 };
-        let b = whole.intersect(Bounds::of_rect(area));
+        let b = self.bounds().intersect(Bounds::of_rect(area));
         if b.is_empty() {
             return;
         }

@@ -9,6 +9,7 @@ use crate::bin::TILE;
 use crate::block_depths::{BandDepths, TileForms};
 use crate::cover::Pass;
 use crate::multisample;
+use crate::setup::Bounds;
 use crate::target::{Clear, ColorPlane, Target, rgba8_from_rgba};
 
 use fearless_simd::{Level, Simd, dispatch};
@@ -113,6 +114,8 @@ impl ColorFormat {
 pub(crate) struct Touches {
     /// Values the target is cleared to first.
     pub(crate) clear: Option<Clear>,
+    /// Pixels that are cleared, whole blocks of them; `None`: all.
+    pub(crate) clear_area: Option<Bounds>,
     /// Whether colours are read or written.
     pub(crate) color: bool,
     /// Whether depths are written.
@@ -129,6 +132,23 @@ pub(crate) struct Touches {
     pub(crate) keeps_forms: bool,
 }
 
+impl Touches {
+    /// The blocks that are cleared, of the tile whose first pixel is at `x`, `y`.
+    pub(crate) fn cleared(&self, x: usize, y: usize) -> u64 {
+        match (self.clear, self.clear_area) {
+            (None, _) => 0,
+            (_, None) => u64::MAX,
+            (_, Some(area)) => {
+                let within = |block: &usize| {
+                    let (x, y) = ((x + block % BLOCKS * 8) as i32, (y + block / BLOCKS * 8) as i32);
+                    (area.x0..area.x1).contains(&x) && (area.y0..area.y1).contains(&y)
+                };
+                (0..BLOCKS * BLOCKS).filter(within).fold(0, |bits, block| bits | 1 << block)
+            }
+        }
+    }
+}
+
 /// The tile being drawn.
 #[derive(Debug)]
 pub(crate) struct TileBuffer {
@@ -141,7 +161,9 @@ pub(crate) struct TileBuffer {
     pub(crate) ids: BlockPlane<u32>,
     /// Per block, no stored depth is greater; where the depth test is reversed, no negated one.
     pub(crate) farthest: [f32; BLOCKS * BLOCKS],
-    /// Blocks that have been brought in, bit by bit.
+    /// Blocks that are cleared when they are brought in, or at the end, bit by bit.
+    pub(crate) cleared: u64,
+    /// Blocks that have been brought in.
     pub(crate) present: u64,
     /// Those of them in which something may have been written.
     pub(crate) written: u64,
@@ -162,6 +184,7 @@ impl Default for TileBuffer {
             stencil: block_plane(0),
             ids: block_plane(0),
             farthest: [f32::INFINITY; BLOCKS * BLOCKS],
+            cleared: 0,
             present: 0,
             written: 0,
             level: 0,
@@ -191,7 +214,7 @@ impl TileBuffer {
     #[cold]
     #[inline(never)]
     pub(crate) fn fetch(&mut self, band: &Band<'_>, tile_x: usize, block: usize, touches: &Touches) {
-        let clear = touches.clear;
+        let clear = touches.clear.filter(|_| self.cleared >> block & 1 == 1);
         if self.present == 0 {
             self.open_forms(band, tile_x / TILE, touches);
         }
@@ -367,7 +390,8 @@ impl TileBuffer {
 
     /// Takes the blocks that have been written back to the target. With `clear`, the others are cleared.
     pub(crate) fn store(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
-        let clear = touches.clear;
+        let cleared = self.cleared;
+        let clear = touches.clear.filter(|_| cleared != 0);
         let (width, height) = (band.width, band.height);
         let (seen, formed) = (self.present, self.formed);
         (self.present, self.level, self.formed) = (0, 0, 0);
@@ -378,7 +402,7 @@ impl TileBuffer {
         if touches.samples {
             blocks_of(present).for_each(|block| self.turn(band, block, touches, false));
         }
-        let rows = Rows { width, height, tile_x, present };
+        let rows = Rows { width, height, tile_x, present, cleared };
         let color = clear.and_then(|c| c.color);
         match (band.color.as_mut().filter(|_| touches.color || color.is_some()), color) {
             (Some(ColorPlane::Rgba8(p)), clear) => {
@@ -449,10 +473,11 @@ struct Rows {
     height: usize,
     tile_x: usize,
     present: u64,
+    cleared: u64,
 }
 
 impl Rows {
-    /// Writes the blocks that are present, row by row of the target, and `clear` elsewhere.
+    /// Writes the blocks that are present, row by row of the target, and `clear` to the others that are cleared.
     /// `get` gives eight pixels of a block from one on.
     #[inline(always)]
     fn store<T: Copy>(&self, plane: &mut [T], clear: Option<T>, get: impl Fn(usize, usize) -> [T; 8]) {
@@ -462,8 +487,9 @@ impl Rows {
         }
         for y in 0..self.height {
             let row = &mut plane[y * self.width + self.tile_x..y * self.width + end];
-            let present = self.present >> (y / 8 * BLOCKS) & 255;
-            if present == 0 {
+            let [present, cleared] = [self.present, self.cleared].map(|bits| bits >> (y / 8 * BLOCKS) & 255);
+            let clear_at = |bx: usize| clear.filter(|_| cleared >> bx & 1 == 1);
+            if present == 0 && (cleared == 255 || clear.is_none()) {
                 clear.into_iter().for_each(|v| row.fill(v));
                 continue;
             }
@@ -472,7 +498,7 @@ impl Rows {
             for (bx, to) in whole.iter_mut().enumerate() {
                 if present >> bx & 1 == 1 {
                     *to = get(y / 8 * BLOCKS + bx, y % 8 * 8);
-                } else if let Some(v) = clear {
+                } else if let Some(v) = clear_at(bx) {
                     *to = [v; 8];
                 }
             }
@@ -482,7 +508,7 @@ impl Rows {
             if present >> last & 1 == 1 {
                 let from = get(y / 8 * BLOCKS + last, y % 8 * 8);
                 rest.copy_from_slice(&from[..rest.len()]);
-            } else if let Some(v) = clear {
+            } else if let Some(v) = clear_at(last) {
                 rest.fill(v);
             }
         }

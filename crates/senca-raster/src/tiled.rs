@@ -8,6 +8,7 @@ use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::block_depths::BlockDepths;
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
+use crate::pixel::{clear_bounds, clear_in_scissor};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{StageNeeds, stage_of};
 use crate::target::{Clear, Target};
@@ -126,7 +127,14 @@ impl TiledRasterizer {
             .iter()
             .map(|(triangles, state)| Draw {
                 triangles: *triangles,
-                state: State { stencil: None, blend: None, antialias: false, multisample: false, ..*state },
+                state: State {
+                    clear_area: None,
+                    stencil: None,
+                    blend: None,
+                    antialias: false,
+                    multisample: false,
+                    ..*state
+                },
                 shading: Shading::None,
             })
             .collect();
@@ -138,10 +146,14 @@ impl TiledRasterizer {
 
     fn draw_group(&mut self, target: &mut Target<'_>, draws: &[Draw<'_>]) -> Counters {
         let mut clear = draws.first().and_then(|draw| draw.state.clear);
-        let confines = |draw: &&Draw<'_>| draw.state.scissor.is_some() && target.blocks.is_none();
-        if let Some(draw) = draws.first().filter(confines) {
-            crate::pixel::clear_in_scissor(target, &draw.state);
-            clear = None;
+        let mut clear_area = None;
+        if let Some(Draw { state, .. }) = draws.first().filter(|_| clear.is_some() && target.blocks.is_none())
+        {
+            clear_area = Some(clear_bounds(target, state)).filter(|area| *area != target.bounds());
+            if clear_area.is_some_and(|area| !has_whole_blocks(&area, target)) {
+                clear_in_scissor(target, state);
+                (clear, clear_area) = (None, None);
+            }
         }
         let tiles = [target.width as usize, target.height as usize].map(|n| n.div_ceil(TILE));
         let map = |draw: &Draw<'_>| ScreenMap::new(target.width, target.height, &draw.state);
@@ -152,7 +164,8 @@ impl TiledRasterizer {
         let mut counters = self.sort(draws, &maps, tiles);
         let mut parts = Vec::with_capacity(draws.len());
         for ((draw, map), sorted) in draws.iter().zip(&maps).zip(&self.sorted) {
-            let pass = pass(target, &draw.triangles, &draw.state, &draw.shading, map, clear);
+            let mut pass = pass(target, &draw.triangles, &draw.state, &draw.shading, map, clear);
+            pass.touches.clear_area = clear_area;
             parts.push(Part {
                 input: sorted.input(draw, map, tiles),
                 runs: &sorted.runs[..sorted.count],
@@ -305,6 +318,13 @@ impl Sorted {
     }
 }
 
+/// Whether an area is made of blocks of 8 x 8 pixels, or what there is of them at the rims of the target.
+fn has_whole_blocks(area: &Bounds, target: &Target<'_>) -> bool {
+    let Bounds { x1, y1, .. } = target.bounds();
+    let ends = |end: i32, rim: i32| end % 8 == 0 || end == rim;
+    area.x0 % 8 == 0 && area.y0 % 8 == 0 && ends(area.x1, x1) && ends(area.y1, y1)
+}
+
 /// What the tiles need to know of a draw.
 fn pass<'a>(
     target: &Target<'_>,
@@ -343,6 +363,7 @@ fn pass<'a>(
         shading,
         touches: Touches {
             clear,
+            clear_area: None,
             color: if stage.is_some() { needs.color } else { color != ColorPath::None },
             depth: has_depth && (state.depth_write || needs.tests_depth),
             reads_depth,
@@ -387,8 +408,12 @@ struct Part<'a> {
 fn share_touches(parts: &mut [Part<'_>], in_blocks: bool) {
     let keeps_forms = in_blocks && parts.iter().all(|part| part.pass.depth_only);
     let any = |f: fn(&Touches) -> bool| parts.iter().any(|part| f(&part.pass.touches));
-    let (color, depth) = (any(|t| t.color), any(|t| t.depth));
-    let (reads_depth, stencil) = (any(|t| t.reads_depth), any(|t| t.stencil));
+    // Around what is cleared blocks are kept as they are, and so must be brought in.
+    let kept = parts.first().and_then(|part| part.pass.touches.clear_area.and(part.pass.touches.clear));
+    let keeps = |f: fn(&Clear) -> bool| kept.as_ref().is_some_and(f);
+    let (color, depth) = (any(|t| t.color) || keeps(|c| c.color.is_some()), any(|t| t.depth));
+    let reads_depth = any(|t| t.reads_depth) || keeps(|c| c.depth.is_some());
+    let stencil = any(|t| t.stencil) || keeps(|c| c.stencil.is_some());
     for part in parts {
         let touches = &mut part.pass.touches;
         *touches = Touches { color, depth, reads_depth, stencil, keeps_forms, ..*touches };
@@ -472,6 +497,9 @@ impl Frame<'_> {
         let mut counts = FragmentCounts::default();
         for column in 0..self.tiles[0] {
             let tile = band.row * self.tiles[0] + column;
+            let cleared =
+                self.parts.first().map(|part| part.pass.touches.cleared(column * TILE, band.row * TILE));
+            scratch.tile.cleared = cleared.unwrap_or_default();
             let mut before: Option<&Part<'_>> = None;
             for part in self.parts {
                 if part.runs.iter().all(|run| run.of_tile(tile).is_empty()) {

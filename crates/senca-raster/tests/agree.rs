@@ -233,6 +233,43 @@ fn drawing_in_two_goes_equals_one() {
 }
 
 #[test]
+fn a_part_is_cleared_as_it_is_drawn() {
+    let (mesh, behind) = (Mesh::random(5, 60), Mesh::random(8, 60));
+    let shading = Shading::vertex_rgb();
+    let rect = |x, y, width, height| Rect { x, y, width, height };
+    let areas = [rect(0, 0, 96, 64), rect(64, 32, 136, 118), rect(8, 16, 40, 8), rect(3, 5, 70, 61)];
+    for area in areas.map(Some).into_iter().chain([None]) {
+        for scissor in [None, Some(rect(16, 8, 160, 96)), Some(rect(20, 7, 50, 70))] {
+            let clear =
+                Clear { color: Some([0.2, 0.4, 0.6, 1.0]), depth: Some(0.9), id: None, stencil: Some(3) };
+            let draw = |rasterizer: &mut dyn Rasterizer, state: &State| {
+                let mut buffers = Buffers::with_stencil(200, 150);
+                let before = State::default();
+                rasterizer.draw(&mut buffers.target().unwrap(), &behind.primitives(), &before, &shading);
+                rasterizer.draw(&mut buffers.target().unwrap(), &mesh.primitives(), state, &shading);
+                (bits(&buffers), buffers.stencil)
+            };
+            let state = State { clear: Some(clear), clear_area: area, scissor, ..State::default() };
+            let tiled = draw(&mut TiledRasterizer::default(), &state);
+            assert!(tiled == draw(&mut ScanlineRasterizer, &state), "{area:?} {scissor:?}");
+            // Depths alone are drawn, the other planes cleared only.
+            let mut buffers = Buffers::with_stencil(200, 150);
+            let mut rasterizer = TiledRasterizer::default();
+            rasterizer.draw(
+                &mut buffers.target().unwrap(),
+                &behind.primitives(),
+                &State::default(),
+                &shading,
+            );
+            rasterizer.draw(&mut buffers.target().unwrap(), &mesh.primitives(), &state, &Shading::None);
+            assert!(tiled.0.1 == bits(&buffers).1 && tiled.1 == buffers.stencil, "{area:?} {scissor:?}");
+            let cleared = buffers.color.pixels().iter().filter(|c| **c == [0.2, 0.4, 0.6, 1.0]).count();
+            assert!(cleared > 0, "{area:?} {scissor:?}");
+        }
+    }
+}
+
+#[test]
 fn eight_bit_targets_agree() {
     let mesh = Mesh::random(11, 300);
     let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };

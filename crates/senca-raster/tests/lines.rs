@@ -167,6 +167,7 @@ const OPENGL: State = State {
     interpolation: Interpolation::Perspective,
     blend: None,
     clear: None,
+    clear_area: None,
     line_width: 1.0,
     point_size: 1.0,
     point_sizes: None,

@@ -8,15 +8,41 @@ use crate::texture::Texels;
 use crate::{Context, Enum, Error, gl};
 use senca_raster::Clear;
 
-/// A clear of all pixels, which waits for what is drawn after it: the rasterizer clears tile by tile as it
+/// A clear of all pixels, or of a part that the rasterizer can clear, which waits for what is drawn after it: the rasterizer clears tile by tile as it
 /// goes, which saves going through the memory once more. Whoever looks at the buffers does it before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WaitingClear {
     /// What is cleared, and to which values.
     pub(crate) values: Clear,
-    /// Width and height of what is drawn to.
-    pub(crate) size: [u32; 2],
+    /// Which pixels.
+    pub(crate) area: Area,
+    /// Whether these are all of what is drawn to.
+    pub(crate) is_whole: bool,
 }
+
+impl WaitingClear {
+    /// Adds what another one of the same area clears.
+    fn join(&mut self, later: &Self) {
+        let (to, from) = (&mut self.values, later.values);
+        to.color = from.color.or(to.color);
+        to.depth = from.depth.or(to.depth);
+        to.stencil = from.stencil.or(to.stencil);
+    }
+
+    /// Whether another one clears none of the buffers that this one does.
+    fn is_apart(&self, other: &Self) -> bool {
+        let (a, b) = (self.values, other.values);
+        let both = [
+            a.color.is_some() && b.color.is_some(),
+            a.depth.is_some() && b.depth.is_some(),
+            a.stencil.is_some() && b.stencil.is_some(),
+        ];
+        both == [false; 3]
+    }
+}
+
+/// Blocks that the rasterizer clears at once have this many samples along each side.
+const BLOCK: i32 = 8;
 
 /// The buffers that `glClear` takes.
 const CLEARABLE: Enum =
@@ -67,13 +93,14 @@ impl Context {
     fn clear_buffers(&mut self, mask: Enum) {
         let nothing_waits = self.batch.indices.is_empty() && self.waiting.is_empty();
         if nothing_waits && self.waiting_clear.is_some() {
-            // A clear of one buffer after that of another: both wait.
+            // A clear of one buffer after that of another: both wait, or the first one goes on waiting.
             if let (Some(new), Some(old)) = (self.whole_clear(mask), self.waiting_clear.as_mut()) {
-                let (to, from) = (&mut old.values, new.values);
-                to.color = from.color.or(to.color);
-                to.depth = from.depth.or(to.depth);
-                to.stencil = from.stencil.or(to.stencil);
-                return;
+                if old.area == new.area {
+                    return old.join(&new);
+                }
+                if old.is_apart(&new) {
+                    return self.do_clear(&new);
+                }
             }
         }
         self.settle_planes();
@@ -117,9 +144,13 @@ impl Context {
     }
 
     fn whole_clear_of(&self, planes: &mut DrawPlanes, mask: Enum) -> Option<WaitingClear> {
-        let (s, area) = (&self.state, planes.area());
-        if area.is_empty() || self.scissored(area) != area || !planes.are_alike() || planes.color_count() > 1
-        {
+        let (s, whole) = (&self.state, planes.area());
+        let area = self.scissored(whole);
+        let side = if planes.samples > 0 { 2 } else { 1 };
+        let fits = |end: i32, rim: i32| end * side % BLOCK == 0 || end == rim;
+        let in_blocks =
+            fits(area.x0, 0) && fits(area.y0, 0) && fits(area.x1, whole.x1) && fits(area.y1, whole.y1);
+        if area.is_empty() || !in_blocks || !planes.are_alike() || planes.color_count() > 1 {
             return None;
         }
         let mut values = Clear { color: None, depth: None, id: None, stencil: None };
@@ -140,15 +171,19 @@ impl Context {
             }
             values.stencil = Some(s.stencil.clear as u8);
         }
-        let size = [planes.width, planes.height];
-        Some(WaitingClear { values, size })
+        Some(WaitingClear { values, area, is_whole: area == whole })
     }
 
     /// Does the clear that waits.
     pub(crate) fn settle_clear(&mut self) {
-        let Some(WaitingClear { values, .. }) = self.waiting_clear.take() else { return };
+        if let Some(clear) = self.waiting_clear.take() {
+            self.do_clear(&clear);
+        }
+    }
+
+    fn do_clear(&mut self, clear: &WaitingClear) {
+        let WaitingClear { values, area, .. } = *clear;
         let mut planes = self.framebuffers.take_planes();
-        let area = planes.area();
         if let Some(color) = values.color {
             planes.colors_mut().for_each(|plane| fill_color(plane, area, color, [true; 4]));
         }

@@ -97,6 +97,11 @@ impl Area {
         }
     }
 
+    /// Whether all of another one is in this.
+    pub(crate) fn contains(self, other: Self) -> bool {
+        self.intersect(other) == other
+    }
+
     pub(crate) fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }

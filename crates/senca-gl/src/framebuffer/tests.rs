@@ -120,6 +120,51 @@ fn a_clear_waits_for_what_is_drawn() {
 }
 
 #[test]
+fn a_clear_of_a_part_waits_for_what_is_drawn() {
+    let picture = |looks: bool, samples: i32, multisample: bool, part: [i32; 4]| {
+        let [x, y, width, height] = part;
+        let mut c = context(96, 64);
+        object(&mut c, [96, 64], samples);
+        c.clear_color([0.0, 0.0, 1.0, 1.0]);
+        c.clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT | gl::STENCIL_BUFFER_BIT);
+        c.finish();
+        if !multisample {
+            c.disable(gl::MULTISAMPLE);
+        }
+        c.viewport(x, y, width, height);
+        c.enable(gl::SCISSOR_TEST);
+        c.scissor(x, y, width, height);
+        c.clear_depth(0.75);
+        clear_red(&mut c, 0.5);
+        c.clear(gl::DEPTH_BUFFER_BIT);
+        c.disable(gl::SCISSOR_TEST);
+        c.clear_stencil(5);
+        c.clear(gl::STENCIL_BUFFER_BIT);
+        if looks {
+            c.finish();
+        }
+        c.enable(gl::DEPTH_TEST);
+        c.begin(gl::TRIANGLES);
+        c.color([0.0f32, 1.0, 0.0]);
+        [[-0.9f32, -0.8, 0.9], [0.5, -0.7, 0.0], [0.1, 0.6, -0.5]].into_iter().for_each(|v| c.vertex(v));
+        c.end();
+        c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, 0);
+        let buffers = gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT | gl::STENCIL_BUFFER_BIT;
+        c.blit_framebuffer([0, 0, 96, 64], [0, 0, 96, 64], buffers, gl::NEAREST);
+        c.bind_framebuffer(gl::READ_FRAMEBUFFER, 0);
+        let colors = rgba(&mut c, [0, 0], [96, 64]);
+        assert!(colors.contains(&[128, 0, 0, 255]) && colors.contains(&[0, 255, 0, 255]));
+        (colors, depths(&mut c, [96, 64]), stencils(&mut c, [96, 64]))
+    };
+    for part in [[0, 0, 64, 32], [16, 8, 48, 40], [5, 6, 50, 41]] {
+        for (samples, multisample) in [(0, true), (4, true), (4, false)] {
+            let [waits, does_not] = [false, true].map(|looks| picture(looks, samples, multisample, part));
+            assert!(waits == does_not, "{part:?} {samples} {multisample}");
+        }
+    }
+}
+
+#[test]
 fn accumulation_adds_up() {
     let mut c = context(2, 1);
     clear_red(&mut c, 0.4);

@@ -21,7 +21,9 @@ impl Context {
     /// Draws batches that go together; returns how many samples passed.
     pub(crate) fn draw_batches(&mut self, batches: &[Batch]) -> u64 {
         let Some(first) = batches.first() else { return 0 };
-        let clear = self.waiting_clear.filter(|clear| clears_along(clear, first)).map(|clear| clear.values);
+        let clear = self.waiting_clear.filter(|clear| clears_along(clear, first));
+        // What is not cleared is left alone by what is drawn.
+        let clear = clear.filter(|clear| clear.is_whole || clear.area.contains(area_of_all(batches)));
         match clear {
             Some(_) => self.waiting_clear = None,
             None => self.settle_clear(),
@@ -29,14 +31,14 @@ impl Context {
         let rows = if clear.is_some() { 0..u32::MAX } else { rows_of_all(batches) };
         let mut planes = self.framebuffers.take_planes_for(rows);
         let (rasterizer, multisample) = (&mut self.rasterizer, first.state.has(Cap::Multisample));
-        if let Some(passed) = draw_depths(rasterizer, &mut planes, batches, clear) {
+        if let Some(passed) = draw_depths(rasterizer, &mut planes, batches, clear.as_ref()) {
             self.framebuffers.put_back(planes);
             return passed;
         }
-        let uses = uses(batches, clear.as_ref());
-        let area = if clear.is_some() { planes.area() } else { area_of_all(batches) };
+        let uses = uses(batches, clear.map(|clear| clear.values).as_ref());
+        let area = clear.map_or_else(|| area_of_all(batches), |clear| clear.area);
         let passed = planes.draw(multisample, &uses, area, |mut target, side| {
-            draw(rasterizer, &mut target, batches, side, clear).passed
+            draw(rasterizer, &mut target, batches, side, clear.as_ref()).passed
         });
         self.framebuffers.put_back(planes);
         passed
@@ -68,7 +70,7 @@ fn clears_along(clear: &WaitingClear, batch: &Batch) -> bool {
     batch.kind == Kind::Triangles
         && !all_culled
         && !s.has(Cap::PolygonSmooth)
-        && (!s.has(Cap::ScissorTest) || covers(rect(s.scissor), clear.size))
+        && (!s.has(Cap::ScissorTest) || Area::of(s.scissor).contains(clear.area))
 }
 
 /// Whether a rectangle covers all pixels of a target.
@@ -126,7 +128,7 @@ fn draw(
     target: &mut Target<'_>,
     batches: &[Batch],
     side: u32,
-    clear: Option<Clear>,
+    clear: Option<&WaitingClear>,
 ) -> Counters {
     let level = rasterizer.settings().level;
     let ready = batches.iter().enumerate().filter(|(_, batch)| !is_culled(batch)).map(|(k, batch)| {
@@ -155,8 +157,9 @@ fn draw_depths(
     rasterizer: &mut TiledRasterizer,
     planes: &mut DrawPlanes,
     batches: &[Batch],
-    clear: Option<Clear>,
+    waiting: Option<&WaitingClear>,
 ) -> Option<u64> {
+    let clear = waiting.filter(|waiting| waiting.is_whole).map(|waiting| waiting.values);
     let (has_stencil, has_colors) = (planes.stencil().is_some(), planes.color_count() > 0);
     let depths_alone = |batch: &Batch| {
         let s = &batch.state;
@@ -165,7 +168,8 @@ fn draw_depths(
         let colors = has_colors && s.color.mask != [false; 4];
         batch.kind == Kind::Triangles && !colors && !stencil && !left_out
     };
-    let clears_others = clear.is_some_and(|c| c.color.is_some() || c.stencil.is_some());
+    let clears_others =
+        waiting.is_some_and(|w| !w.is_whole || w.values.color.is_some() || w.values.stencil.is_some());
     if clears_others || !batches.iter().all(depths_alone) {
         return None;
     }
@@ -213,9 +217,20 @@ enum Work {
 }
 
 impl<'a> Ready<'a> {
-    fn new(batch: &'a Batch, target: &Target<'_>, side: u32, clear: Option<Clear>, level: SimdLevel) -> Self {
+    fn new(
+        batch: &'a Batch,
+        target: &Target<'_>,
+        side: u32,
+        clear: Option<&WaitingClear>,
+        level: SimdLevel,
+    ) -> Self {
         let s = &batch.state;
-        let mut state = State { clear, ..in_samples(raster_state(batch), side) };
+        let clear_area = clear.filter(|clear| !clear.is_whole).map(|clear| {
+            let Area { x0, y0, x1, y1 } = clear.area;
+            rect([x0, y0, x1 - x0, y1 - y0])
+        });
+        let clear = clear.map(|clear| clear.values);
+        let mut state = in_samples(State { clear, clear_area, ..raster_state(batch) }, side);
         state.scissor = state.scissor.filter(|scissor| !covers(*scissor, [target.width(), target.height()]));
         let joins: Vec<u32> = match state.stipple {
             Some(_) => batch.continues.iter().map(|goes_on| u32::from(*goes_on)).collect(),
@@ -322,6 +337,7 @@ fn in_samples(state: State, side: u32) -> State {
     State {
         viewport: state.viewport.map(scaled),
         scissor: state.scissor.map(rect),
+        clear_area: state.clear_area.map(rect),
         depth_bias: DepthBias { slope: state.depth_bias.slope * factor, ..state.depth_bias },
         line_width: state.line_width * factor,
         point_size: state.point_size * factor,
