@@ -344,7 +344,11 @@ impl Film {
             let before = I::counts(work);
             part.load(is_fresh, plate);
             pixels.clear();
-            pixels.extend(IN_SQUARES.iter().filter(|place| tile.has(**place)));
+            if tile.width == TILE && tile.height == TILE {
+                pixels.extend_from_slice(&IN_SQUARES);
+            } else {
+                pixels.extend(IN_SQUARES.iter().filter(|place| tile.has(**place)));
+            }
             let at_once = (Batch::MOST / range.len().max(1)).max(1);
             for pixels in pixels.chunks(at_once) {
                 let mut rest = samples.clone();
@@ -511,7 +515,8 @@ fn tile_parts<'a>(
     tallies: &'a mut [Tally],
 ) -> Vec<TilePart<'a>> {
     let mut parts: Vec<TilePart<'a>> = Vec::new();
-    parts.resize_with(tiles, TilePart::default);
+    let part = || TilePart { sums: Vec::with_capacity(TILE as usize), tallies: Vec::new() };
+    parts.resize_with(tiles, part);
     let width = area.width.max(1) as usize;
     let columns = width.div_ceil(TILE as usize);
     let tile = |row: usize, column: usize| row / TILE as usize * columns + column;

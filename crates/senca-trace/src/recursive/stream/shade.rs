@@ -280,10 +280,11 @@ impl Tracer<'_> {
                 self.look_for_lamps(simd, stream, pass, rays, live, places, weight, reflectors, &mut light);
                 let alpha = if pass.nest == 0 { 1.0 } else { 0.0 };
                 let slots = rays.slot.to_array();
-                let light = channels!(k => light[k].to_array());
+                let red_green: [f32; 2 * LANES] = light[0].narrow(light[1]).into();
+                let blue: [f32; 2 * LANES] = light[2].narrow(light[2]).into();
                 for lane in lanes_of(live.to_bitmask()) {
-                    let [r, g, b] = channels!(k => light[k][lane] as f32);
-                    pass.desk.add(slots[lane] as usize, LinearRgb::new(r, g, b), alpha);
+                    let light = LinearRgb::new(red_green[lane], red_green[LANES + lane], blue[lane]);
+                    pass.desk.add(slots[lane] as usize, light, alpha);
                 }
                 self.reflect(simd, pass, rays, live, places, weight);
             },
