@@ -237,7 +237,7 @@ impl BlockDepths {
         self.at(x, y)
     }
 
-    /// The depths of squares of two columns and two rows, `lanes` of them: of each the one at the first column
+    /// The depths of sixteen squares of two columns and two rows: of each the one at the first column
     /// and row, that at the second column, then those of the second row. Columns and rows must be within
     /// the picture; what is not gives any depth.
     #[inline]
