@@ -574,7 +574,7 @@ pub trait Rasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        crate::lines::draw_lines(target, lines, state, shading, (self.threads(), Level::baseline()))
+        crate::lines::draw_lines(target, lines, state, shading, (self.threads(), self.level()))
     }
 
     /// Draws points as squares, in order.
@@ -585,13 +585,19 @@ pub trait Rasterizer {
         state: &State,
         shading: &Shading<'_>,
     ) -> Counters {
-        crate::lines::draw_points(target, points, state, shading, (self.threads(), Level::baseline()))
+        crate::lines::draw_points(target, points, state, shading, (self.threads(), self.level()))
     }
 
     /// Threads that lines and points are drawn on. Default 1: one fragment after another.
     #[must_use]
     fn threads(&self) -> usize {
         1
+    }
+
+    /// Vector instructions that lines are drawn with. Default: those that every machine has.
+    #[must_use]
+    fn level(&self) -> Level {
+        Level::baseline()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Depths of a picture, kept in blocks: where one or two triangles cover a block of 8 x 8 pixels, only
-//! their planes are kept. A shadow map, which is large, drawn anew for each picture and read at few of its
-//! pixels, takes a tenth of the memory to go through.
+//! their planes are kept. A shadow map is large, drawn anew for each picture and read at few of its pixels, and
+//! going through the memory is most of the work.
 //!
 //! A plane's depth at a pixel is found by the same operations in the same order as when it is drawn, so
 //! nothing shows whether depths have been kept this way.
@@ -240,7 +240,8 @@ impl BlockDepths {
     /// The depths of sixteen squares of two columns and two rows: of each the one at the first column
     /// and row, that at the second column, then those of the second row. Columns and rows must be within
     /// the picture; what is not gives any depth.
-    #[inline]
+    // Not to be inlined into vector code, which would take each number out of its register.
+    #[inline(never)]
     pub fn gather(&self, columns: [&[i32; LANES]; 2], rows: [&[i32; LANES]; 2], to: &mut [[f32; LANES]; 4]) {
         for (corner, to) in to.iter_mut().enumerate() {
             let (columns, rows) = (columns[corner % 2], rows[corner / 2]);
@@ -287,7 +288,7 @@ impl BlockDepths {
         if forms.valued >> block & 1 == 1 {
             return self.values.get(tile * TILE * TILE + block * 64 + pixel).copied().unwrap_or_default();
         }
-        // Without a branch: where blocks are cut is as good as random.
+        // The plane is chosen without a branch: where blocks are cut is as good as random.
         let form = &forms.blocks[block % COUNT];
         let plane = if form.inner_pixels >> pixel & 1 == 1 { form.inner } else { form.outer };
         forms.planes[usize::from(plane) % PLANES].at((x % TILE) as f32, (y % TILE) as f32)

@@ -228,30 +228,12 @@ impl Rasterizer for TiledRasterizer {
         self.draw_all(target, &[Draw { triangles: *triangles, state: *state, shading: *shading }])
     }
 
-    fn draw_lines(
-        &mut self,
-        target: &mut Target<'_>,
-        lines: &Primitives<'_>,
-        state: &State,
-        shading: &Shading<'_>,
-    ) -> Counters {
-        let settings = (self.settings.threads(), self.settings.level);
-        crate::lines::draw_lines(target, lines, state, shading, settings)
-    }
-
-    fn draw_points(
-        &mut self,
-        target: &mut Target<'_>,
-        points: &Primitives<'_>,
-        state: &State,
-        shading: &Shading<'_>,
-    ) -> Counters {
-        let settings = (self.settings.threads(), self.settings.level);
-        crate::lines::draw_points(target, points, state, shading, settings)
-    }
-
     fn threads(&self) -> usize {
         self.settings.threads()
+    }
+
+    fn level(&self) -> Level {
+        self.settings.level
     }
 }
 

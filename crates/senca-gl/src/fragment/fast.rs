@@ -351,21 +351,11 @@ fn gather_squares<S: Simd>(
     linear: bool,
     out: &mut [[f32; LANES]; 4],
 ) {
-    let [columns, rows] = axes.map(|axis| {
+    let [[x0, x1], [y0, y1]] = axes.map(|axis| {
         let high = if linear { axis.high } else { axis.low };
         [axis.low.to_array(), high.to_array()]
     });
-    gather_blocks(blocks, &columns, &rows, out);
-}
-
-#[inline(never)]
-fn gather_blocks(
-    blocks: &BlockDepths,
-    [x0, x1]: &[[i32; LANES]; 2],
-    [y0, y1]: &[[i32; LANES]; 2],
-    out: &mut [[f32; LANES]; 4],
-) {
-    blocks.gather([x0, x1], [y0, y1], out);
+    blocks.gather([&x0, &x1], [&y0, &y1], out);
 }
 
 #[inline(always)]

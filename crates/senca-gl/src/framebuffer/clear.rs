@@ -2,14 +2,15 @@
 
 use super::draw::DrawPlanes;
 use super::fill::{fill_color, fill_depth, fill_stencil};
-use super::plane::Area;
+use super::plane::{Area, side};
 use crate::state::Cap;
 use crate::texture::Texels;
 use crate::{Context, Enum, Error, gl};
 use senca_raster::Clear;
 
-/// A clear of all pixels, or of a part that the rasterizer can clear, which waits for what is drawn after it: the rasterizer clears tile by tile as it
-/// goes, which saves going through the memory once more. Whoever looks at the buffers does it before.
+/// A clear of all pixels, or of a part that the rasterizer can clear, which waits for what is drawn after it: the
+/// rasterizer clears tile by tile as it goes, which saves going through the memory once more. Whoever looks at the
+/// buffers does it before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WaitingClear {
     /// What is cleared, and to which values.
@@ -146,7 +147,7 @@ impl Context {
     fn whole_clear_of(&self, planes: &mut DrawPlanes, mask: Enum) -> Option<WaitingClear> {
         let (s, whole) = (&self.state, planes.area());
         let area = self.scissored(whole);
-        let side = if planes.samples > 0 { 2 } else { 1 };
+        let side = side(planes.samples) as i32;
         let fits = |end: i32, rim: i32| end * side % BLOCK == 0 || end == rim;
         let in_blocks =
             fits(area.x0, 0) && fits(area.y0, 0) && fits(area.x1, whole.x1) && fits(area.y1, whole.y1);

@@ -1,5 +1,6 @@
 //! Depth textures that are drawn to: kept in blocks or row by row, nobody sees which.
 
+use crate::texture::Texels;
 use crate::{Config, Context, gl};
 
 const SIZE: i32 = 200;
@@ -88,6 +89,20 @@ fn seen(c: &mut Context, compared: bool) -> Vec<u8> {
     c.read_pixels([0, 0], [VIEW; 2], gl::RGBA, gl::UNSIGNED_BYTE, &mut out);
     assert_eq!(c.get_error(), gl::NO_ERROR);
     out
+}
+
+#[test]
+fn a_map_is_kept_in_blocks_after_a_clear_that_waited() {
+    for settled in [false, true] {
+        let (mut c, _) = drawn(settled);
+        c.finish();
+        let mut planes = c.framebuffers.take_planes();
+        let Some(Texels::Depth(depths)) = planes.depth().map(|plane| (*plane.texels).clone()) else {
+            panic!("a texture of depths")
+        };
+        c.framebuffers.put_back(planes);
+        assert_eq!(depths.blocks().is_some(), !settled);
+    }
 }
 
 #[test]
