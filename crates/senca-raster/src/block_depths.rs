@@ -10,7 +10,7 @@ use crate::bin::TILE;
 use crate::cover::{LANE_FX, LANE_FY};
 use crate::target::{MAX_TARGET_SIDE, TargetError};
 use crate::tile::{BLOCKS, Block};
-use fearless_simd::{Level, Simd, dispatch, f32x16, mask32x16, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, f32x16, i32x16, mask32x16, prelude::*};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -18,6 +18,9 @@ use std::ops::Range;
 pub(crate) const COUNT: usize = BLOCKS * BLOCKS;
 /// Planes that a tile keeps; blocks that need more are kept as values.
 const PLANES: usize = 64;
+
+/// Numbers of a [`DepthForm`].
+const FORM: usize = 7;
 
 /// The depths of a triangle: a plane over the pixels of a tile, clamped to the triangle's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,32 +73,35 @@ fn corner(block: usize) -> (f32, f32) {
     ((block % BLOCKS * 8) as f32, (block / BLOCKS * 8) as f32)
 }
 
-/// The planes of a block.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct BlockForm {
-    /// Pixels, row by row, that have the inner plane; the others have the outer one.
-    inner_pixels: u64,
-    outer: u8,
-    inner: u8,
-}
-
-/// What a tile keeps of its depths besides values.
+/// What a tile keeps of its depths besides values: which plane its pixels have. Whatever most lookups need comes
+/// first, so that it is in few lines of the cache.
 #[derive(Clone, Debug, PartialEq)]
+#[repr(C, align(64))]
 pub(crate) struct TileForms {
-    planes: [DepthForm; PLANES],
-    count: usize,
-    blocks: [BlockForm; COUNT],
     /// Blocks whose depths are values, bit by bit.
     pub(crate) valued: u64,
+    /// Blocks that have an inner plane.
+    cut: u64,
+    count: usize,
+    /// Number of the plane that a block's pixels have if they are not among the inner ones.
+    outer: [u8; COUNT],
+    planes: [DepthForm; PLANES],
+    /// Number of the plane of the inner pixels.
+    inner: [u8; COUNT],
+    /// Which pixels have the inner plane, row by row; of blocks that are not cut, any.
+    inner_pixels: [u64; COUNT],
 }
 
 impl Default for TileForms {
     fn default() -> Self {
         Self {
-            planes: [DepthForm::level(0.0); PLANES],
-            count: 1,
-            blocks: [BlockForm::default(); COUNT],
             valued: 0,
+            cut: 0,
+            count: 1,
+            outer: [0; COUNT],
+            planes: [DepthForm::level(0.0); PLANES],
+            inner: [0; COUNT],
+            inner_pixels: [0; COUNT],
         }
     }
 }
@@ -104,14 +110,17 @@ impl TileForms {
     /// One depth everywhere.
     pub(crate) fn clear(&mut self, depth: f32) {
         self.planes[0] = DepthForm::level(depth);
-        (self.count, self.valued) = (1, 0);
-        self.blocks = [BlockForm::default(); COUNT];
+        (self.count, self.valued, self.cut) = (1, 0, 0);
+        self.outer = [0; COUNT];
     }
 
     /// Takes what another has.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.planes[..other.count].copy_from_slice(&other.planes[..other.count]);
-        (self.count, self.valued, self.blocks) = (other.count, other.valued, other.blocks);
+        (self.count, self.valued, self.cut, self.outer) = (other.count, other.valued, other.cut, other.outer);
+        if other.cut != 0 {
+            (self.inner, self.inner_pixels) = (other.inner, other.inner_pixels);
+        }
     }
 
     /// Adds a plane; `None` if there are too many.
@@ -126,36 +135,60 @@ impl TileForms {
     /// Gives all of a block a plane.
     #[inline(always)]
     pub(crate) fn cover(&mut self, block: usize, plane: u8) {
-        self.blocks[block % COUNT] = BlockForm { inner_pixels: 0, outer: plane, inner: 0 };
+        self.outer[block % COUNT] = plane;
+        self.cut &= !(1 << block);
     }
 
     /// Gives a plane to pixels of a block that have one depth without it, or to all the others. Tells what
     /// has become of it.
     #[inline(always)]
     pub(crate) fn cover_some(&mut self, block: usize, pixels: u64, plane: u8) -> Covered {
-        let form = &mut self.blocks[block % COUNT];
-        if form.inner_pixels == 0 && pixels == u64::MAX {
-            *form = BlockForm { inner_pixels: 0, outer: plane, inner: 0 };
+        let is_cut = self.cut >> block & 1 == 1;
+        if !is_cut && pixels == u64::MAX {
+            self.outer[block % COUNT] = plane;
             Covered::All
-        } else if form.inner_pixels == 0 {
-            (form.inner_pixels, form.inner) = (pixels, plane);
+        } else if !is_cut {
+            self.cut |= 1 << block;
+            (self.inner_pixels[block % COUNT], self.inner[block % COUNT]) = (pixels, plane);
             Covered::Some
-        } else if form.inner_pixels == !pixels {
-            form.outer = plane;
+        } else if self.inner_pixels[block % COUNT] == !pixels {
+            self.outer[block % COUNT] = plane;
             Covered::All
         } else {
             Covered::TooMuch
         }
     }
 
+    /// The inner pixels of a block.
+    #[inline(always)]
+    fn inner_pixels(&self, block: usize) -> u64 {
+        if self.cut >> block & 1 == 1 { self.inner_pixels[block % COUNT] } else { 0 }
+    }
+
+    /// The outer plane of a block, and the inner one; if there is none, any.
+    #[inline(always)]
+    fn planes_of(&self, block: usize) -> [&DepthForm; 2] {
+        let numbers = [self.outer[block % COUNT], self.inner[block % COUNT]];
+        numbers.map(|number| &self.planes[usize::from(number) % PLANES])
+    }
+
+    /// Number of the plane of a block's pixel, unless the block is kept as values.
+    #[inline(always)]
+    fn number(&self, block: usize, pixel: usize) -> Option<usize> {
+        if self.valued >> block & 1 == 1 {
+            return None;
+        }
+        let is_inner = self.inner_pixels(block) >> pixel & 1 == 1;
+        Some(usize::from(if is_inner { self.inner[block % COUNT] } else { self.outer[block % COUNT] }))
+    }
+
     /// Depths of a block that has planes.
     #[inline(always)]
     pub(crate) fn values<S: Simd>(&self, simd: S, block: usize, to: &mut Block<f32>) {
-        let form = &self.blocks[block % COUNT];
-        let outer = &self.planes[usize::from(form.outer) % PLANES];
-        let inner = &self.planes[usize::from(form.inner) % PLANES];
+        let inner_pixels = self.inner_pixels(block);
+        let [outer, inner] = self.planes_of(block);
         for (pair, to) in to.iter_mut().enumerate() {
-            let pixels = form.inner_pixels >> (LANES * pair) & 0xffff;
+            let pixels = inner_pixels >> (LANES * pair) & 0xffff;
             let depths = outer.along(simd, block, pair);
             if pixels == 0 {
                 depths.store_array(to);
@@ -168,9 +201,8 @@ impl TileForms {
 
     /// The greatest depth of a block that has planes, or more; negated ones if `reversed`.
     pub(crate) fn farthest(&self, block: usize, reversed: bool) -> f32 {
-        let form = &self.blocks[block % COUNT];
-        let of = |plane: u8| self.planes[usize::from(plane) % PLANES].farthest(block, reversed);
-        if form.inner_pixels == 0 { of(form.outer) } else { of(form.outer).max(of(form.inner)) }
+        let [outer, inner] = self.planes_of(block).map(|plane| plane.farthest(block, reversed));
+        if self.inner_pixels(block) == 0 { outer } else { outer.max(inner) }
     }
 }
 
@@ -238,17 +270,110 @@ impl BlockDepths {
     }
 
     /// The depths of sixteen squares of two columns and two rows: of each the one at the first column
-    /// and row, that at the second column, then those of the second row. Columns and rows must be within
-    /// the picture; what is not gives any depth.
+    /// and row, that at the second column, then those of the second row, or as many of them as `to` has room for.
+    /// Only squares whose bit is set in `mask` are looked at; their columns and rows must be within the picture, or
+    /// any depth is given.
+    #[inline(always)]
+    pub fn gather<S: Simd>(
+        &self,
+        simd: S,
+        mask: u16,
+        columns: [&[i32; LANES]; 2],
+        rows: [&[i32; LANES]; 2],
+        to: &mut [[f32; LANES]],
+    ) {
+        let mut planes = [[0.0; LANES]; FORM];
+        let planar = self.gather_planes(mask, columns, rows, &mut planes, to);
+        if planar == 0 {
+            return;
+        }
+        let keep = mask32x16::from_bitmask(simd, u64::from(planar));
+        let [value, dx, dy, x, y, low, high] = planes.map(|plane| f32x16::load_array(simd, plane));
+        let within = |numbers: &[i32; LANES]| {
+            (i32x16::load_array_ref(simd, numbers) & i32x16::splat(simd, TILE as i32 - 1))
+                .to_float::<f32x16<S>>()
+        };
+        for (corner, to) in to.iter_mut().enumerate().take(4) {
+            // As DepthForm::at.
+            let row = value + dy * (y + within(rows[corner / 2]));
+            let z = (row + dx * (x + within(columns[corner % 2]))).max(low).min(high);
+            keep.select(z, f32x16::load_array_ref(simd, to)).store_array(to);
+        }
+    }
+
+    /// The planes of squares that lie in one plane, number by number, and which these are; of others the depths.
     // Not to be inlined into vector code, which would take each number out of its register.
     #[inline(never)]
-    pub fn gather(&self, columns: [&[i32; LANES]; 2], rows: [&[i32; LANES]; 2], to: &mut [[f32; LANES]; 4]) {
-        for (corner, to) in to.iter_mut().enumerate() {
-            let (columns, rows) = (columns[corner % 2], rows[corner / 2]);
-            for (to, (x, y)) in to.iter_mut().zip(columns.iter().zip(rows)) {
-                *to = self.at(*x as u32 as usize, *y as u32 as usize);
+    fn gather_planes(
+        &self,
+        mask: u16,
+        [x0, x1]: [&[i32; LANES]; 2],
+        [y0, y1]: [&[i32; LANES]; 2],
+        planes: &mut [[f32; LANES]; FORM],
+        to: &mut [[f32; LANES]],
+    ) -> u16 {
+        let mut planar = 0;
+        let mut left = mask;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % LANES;
+            left &= left - 1;
+            let [x0, x1, y0, y1] = [x0[lane], x1[lane], y0[lane], y1[lane]].map(|v| v as u32 as usize);
+            let corners = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)];
+            let one_block = ((x0 ^ x1) | (y0 ^ y1)) < 8;
+            let form = if one_block { self.form_of_square(corners) } else { self.form_of_all(corners) };
+            if let Some(form) = form {
+                planar |= 1 << lane;
+                let ([value, dx, dy], [x, y], [low, high]) = (form.plane, form.offset, form.range);
+                for (plane, v) in planes.iter_mut().zip([value, dx, dy, x, y, low, high]) {
+                    plane[lane] = v;
+                }
+            } else {
+                for (to, (x, y)) in to.iter_mut().zip(corners) {
+                    to[lane] = self.at(x, y);
+                }
             }
         }
+        planar
+    }
+
+    /// The plane of the corners of a square, all of which are in one block, if they have the same.
+    #[inline(always)]
+    fn form_of_square(&self, corners: [(usize, usize); 4]) -> Option<&DepthForm> {
+        let [tile, block, _] = self.place(corners[0]);
+        let forms = self.tiles.get(tile)?;
+        if forms.valued >> block & 1 == 1 {
+            return None;
+        }
+        let mut number = forms.outer[block % COUNT];
+        if forms.cut >> block & 1 == 1 {
+            let square = corners.iter().fold(0u64, |bits, &(x, y)| bits | 1 << (y % 8 * 8 + x % 8));
+            let inner = forms.inner_pixels[block % COUNT] & square;
+            if inner != 0 && inner != square {
+                return None;
+            }
+            number = if inner == 0 { number } else { forms.inner[block % COUNT] };
+        }
+        Some(&forms.planes[usize::from(number) % PLANES])
+    }
+
+    /// The plane of pixels of one tile, if they have the same.
+    #[inline(always)]
+    fn form_of_all(&self, corners: [(usize, usize); 4]) -> Option<&DepthForm> {
+        let [tile, ..] = self.place(corners[0]);
+        let forms = self.tiles.get(tile)?;
+        let number = |corner| {
+            let [of, block, pixel] = self.place(corner);
+            (of == tile).then(|| forms.number(block, pixel)).flatten()
+        };
+        let first = number(corners[0])?;
+        let same = corners[1..].iter().all(|&corner| number(corner) == Some(first));
+        same.then(|| &forms.planes[first % PLANES])
+    }
+
+    /// Tile, block of the tile and pixel of the block.
+    #[inline(always)]
+    fn place(&self, (x, y): (usize, usize)) -> [usize; 3] {
+        [y / TILE * self.columns + x / TILE, y % TILE / 8 * BLOCKS + x % TILE / 8, y % 8 * 8 + x % 8]
     }
 
     /// All depths, row by row.
@@ -282,16 +407,12 @@ impl BlockDepths {
     /// The depth of a pixel; any if it is outside the picture.
     #[inline(always)]
     fn at(&self, x: usize, y: usize) -> f32 {
-        let tile = y / TILE * self.columns + x / TILE;
+        let [tile, block, pixel] = self.place((x, y));
         let Some(forms) = self.tiles.get(tile) else { return 0.0 };
-        let (block, pixel) = (y % TILE / 8 * BLOCKS + x % TILE / 8, y % 8 * 8 + x % 8);
-        if forms.valued >> block & 1 == 1 {
-            return self.values.get(tile * TILE * TILE + block * 64 + pixel).copied().unwrap_or_default();
+        match forms.number(block, pixel) {
+            Some(number) => forms.planes[number % PLANES].at((x % TILE) as f32, (y % TILE) as f32),
+            None => self.values.get(tile * TILE * TILE + block * 64 + pixel).copied().unwrap_or_default(),
         }
-        // The plane is chosen without a branch: where blocks are cut is as good as random.
-        let form = &forms.blocks[block % COUNT];
-        let plane = if form.inner_pixels >> pixel & 1 == 1 { form.inner } else { form.outer };
-        forms.planes[usize::from(plane) % PLANES].at((x % TILE) as f32, (y % TILE) as f32)
     }
 
     #[inline(always)]

@@ -82,6 +82,6 @@ pub use target::{
 };
 pub use texture::{
     Filter, MAX_TEXTURE_SIDE, Mip, Sampler, SharedTexels, TexelGrid, Texels, Texture, TextureError,
-    TextureLevel, Wrap,
+    TextureLevel, Wrap, log2,
 };
 pub use tiled::{Draw, TiledRasterizer, TiledSettings};

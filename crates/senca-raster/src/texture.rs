@@ -544,8 +544,9 @@ fn in_convex(corners: &[[f32; 2]; 4], p: [f32; 2]) -> bool {
 
 /// Base-2 logarithm of a positive number, to 2e-5; large and negative for 0. Made of exact
 /// steps only, so every machine gets the same bits.
+#[inline]
 #[must_use]
-pub(crate) fn log2(v: f32) -> f32 {
+pub fn log2(v: f32) -> f32 {
     let bits = v.to_bits();
     let exponent = (bits >> 23) as i32 - 127;
     let m = f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000) - 1.0;

@@ -1,6 +1,7 @@
 //! Depths kept in blocks are those that are drawn into a plane of depths.
 
 use senca_math::glam::Vec4;
+use senca_raster::simd::dispatch;
 use senca_raster::{
     BlockDepths, Buffers, Clear, Compare, Counters, Cull, DepthBias, Draw, Ids, Primitives, Rect, SAMPLES,
     Shading, SimdLevel, State, Target, TiledRasterizer, TiledSettings,
@@ -148,9 +149,10 @@ fn squares_are_gathered_across_blocks() {
     for _ in 0..200 {
         let [x, y] = [149.0, 89.0].map(|n| std::array::from_fn(|_| (n * r.next()) as i32));
         let (x1, y1) = (x.map(|x: i32| (x + 1) % 150), y.map(|y: i32| y + 1));
-        let mut square = [[0.0; 16]; SAMPLES];
-        blocks.gather([&x, &x1], [&y, &y1], &mut square);
-        for lane in 0..16 {
+        let (mut square, mask) = ([[0.0; 16]; SAMPLES], (65_536.0 * r.next()) as u16);
+        let level = SimdLevel::new();
+        dispatch!(level, simd => blocks.gather(simd, mask, [&x, &x1], [&y, &y1], &mut square));
+        for lane in (0..16).filter(|lane| mask >> lane & 1 == 1) {
             let at = |x: i32, y: i32| rows[(y * 150 + x) as usize];
             let [a, b, c, d] = [(x, y), (x1, y), (x, y1), (x1, y1)].map(|(x, y)| at(x[lane], y[lane]));
             assert_eq!(square.map(|depths| depths[lane]), [a, b, c, d]);

@@ -90,14 +90,14 @@ impl FastTexture {
         }
         let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
         let reference = reference.max(zero).min(one);
-        let place = At { face, st, reference };
+        let place = At { mask: f.mask, face, st, reference };
         let mut result = [zero; 4];
         let mut left = (0..4).filter(|k| f.mask & lanes_of(f.columns, *k) != 0).fold(0u32, |l, k| l | 1 << k);
         while left != 0 {
             // All squares of 2 x 2 fragments that read the same levels in the same way.
             let chosen = t.levels_at(lods[left.trailing_zeros() as usize % 4]);
             let (linear, level, _) = chosen;
-            let (mut lanes, mut shares, mut two_levels) = (0, [0.0; LANES], false);
+            let (mut lanes, mut shares, mut two_levels) = (0, zero, false);
             let waiting = left;
             for k in (0..4).filter(|k| waiting >> k & 1 == 1) {
                 let (l, n, share) = t.levels_at(lods[k]);
@@ -106,13 +106,16 @@ impl FastTexture {
                     let here = lanes_of(f.columns, k);
                     lanes |= here;
                     two_levels |= share > 0.0;
-                    (0..LANES).filter(|i| here >> i & 1 == 1).for_each(|i| shares[i] = share);
+                    if share > 0.0 {
+                        let here = mask32x16::from_bitmask(simd, u64::from(here));
+                        shares = here.select(f32x16::splat(simd, share), shares);
+                    }
                 }
             }
             let mut value = self.read(simd, t, level, &place, linear);
             if two_levels {
                 let coarse = self.read(simd, t, level + 1, &place, linear);
-                value = mixed(value, coarse, f32x16::load_array_ref(simd, &shares));
+                value = mixed(value, coarse, shares);
             }
             if f.mask & !lanes == 0 {
                 result = value;
@@ -201,7 +204,7 @@ impl FastTexture {
             Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. } => {
                 let mut values = [[0f32; LANES]; 4];
                 if let Some(blocks) = depths.blocks() {
-                    gather_squares(blocks, [&across, &along], linear, &mut values);
+                    gather_squares(simd, blocks, at.mask, [&across, &along], linear, &mut values);
                 } else {
                     gather_depths(depths, numbers, &mut values);
                 }
@@ -257,8 +260,9 @@ struct Axis<S: Simd> {
     share: f32x16<S>,
 }
 
-/// Where fragments read a texture: face, s and t, and what depths are compared to.
+/// Where fragments read a texture: which of them, face, s and t, and what depths are compared to.
 struct At<S: Simd> {
+    mask: u16,
     face: usize,
     st: [f32x16<S>; 2],
     reference: f32x16<S>,
@@ -292,8 +296,8 @@ fn quad_lods<S: Simd>(t: &Sampled, f: &Fragments<'_>, st: [f32x16<S>; 2]) -> [f3
         let first = lanes.trailing_zeros() as usize % LANES;
         let [right, below] = [(first + 1) % LANES, (first + f.columns as usize) % LANES];
         if f.mask & lanes != 0 {
-            let x = [s[right] - s[first], v[right] - v[first], 0.0];
-            let y = [s[below] - s[first], v[below] - v[first], 0.0];
+            let x = [s[right] - s[first], v[right] - v[first]];
+            let y = [s[below] - s[first], v[below] - v[first]];
             *lod = t.lod([x, y]);
         }
     }
@@ -346,16 +350,19 @@ fn gather_depths(depths: &[f32], numbers: &[[i32; LANES]], out: &mut [[f32; LANE
 /// The depths of squares of two texels along each axis, of an image that keeps them in blocks.
 #[inline(always)]
 fn gather_squares<S: Simd>(
+    simd: S,
     blocks: &BlockDepths,
+    mask: u16,
     axes: [&Axis<S>; 2],
     linear: bool,
     out: &mut [[f32; LANES]; 4],
 ) {
+    let out = if linear { &mut out[..] } else { &mut out[..1] };
     let [[x0, x1], [y0, y1]] = axes.map(|axis| {
         let high = if linear { axis.high } else { axis.low };
         [axis.low.to_array(), high.to_array()]
     });
-    blocks.gather([&x0, &x1], [&y0, &y1], out);
+    blocks.gather(simd, mask, [&x0, &x1], [&y0, &y1], out);
 }
 
 #[inline(always)]

@@ -7,6 +7,7 @@ use super::ops::compares;
 use crate::state::TexTarget;
 use crate::texture::{BaseFormat, TexImage, TexParams, Texels};
 use crate::{Enum, gl};
+use senca_raster::log2;
 use std::sync::{Arc, LazyLock};
 
 /// Most that biases may add to the level of detail, either way.
@@ -119,14 +120,15 @@ impl Sampled {
         self.params.uses_mipmaps() || self.params.min_filter != self.params.mag_filter
     }
 
-    /// Level of detail from the changes of coordinates per pixel in x and in y.
-    pub(crate) fn lod(&self, derivatives: [[f32; 3]; 2]) -> f32 {
+    /// Level of detail from the changes of coordinates per pixel in x and in y, up to three of them.
+    #[inline]
+    pub(crate) fn lod<const N: usize>(&self, derivatives: [[f32; N]; 2]) -> f32 {
         let size = self.levels[0].size;
-        let square = |d: [f32; 3]| {
-            (0..self.dimensions()).map(|k| (d[k] * size[k] as f32) * (d[k] * size[k] as f32)).sum::<f32>()
-        };
-        let [x, y] = derivatives.map(square);
-        let lod = 0.5 * x.max(y).log2() + self.lod_bias;
+        let [x, y] = derivatives.map(|d| {
+            let texels = |k: usize| d[k] * size[k] as f32;
+            (0..N.min(self.dimensions())).map(|k| texels(k) * texels(k)).sum::<f32>()
+        });
+        let lod = 0.5 * log2(x.max(y)) + self.lod_bias;
         lod.max(self.params.min_lod).min(self.params.max_lod)
     }
 
