@@ -233,9 +233,15 @@ impl Context {
 
     /// Draws what waits.
     pub(crate) fn flush_batch(&mut self) {
+        self.draw_gathered();
+        self.settle_clear();
+    }
+
+    /// Draws all primitives that wait. A clear goes on waiting if there are none.
+    pub(crate) fn draw_gathered(&mut self) {
         self.set_aside();
         self.draw_waiting();
-        self.settle_clear();
+        self.reuse_memory();
     }
 
     /// Puts what has been gathered to what waits to be drawn, and begins anew with the same state. Batches that
@@ -245,13 +251,25 @@ impl Context {
             self.batch.clear();
             return;
         }
-        let mut next = self.spare_batches.pop().unwrap_or_default();
-        (next.kind, next.layout) = (self.batch.kind, self.batch.layout);
+        let mut next = Batch { kind: self.batch.kind, layout: self.batch.layout, ..Batch::default() };
         next.state.clone_from(&self.batch.state);
         self.waiting.push(std::mem::replace(&mut self.batch, next));
         let vertices: usize = self.waiting.iter().map(|batch| batch.positions.len()).sum();
         if vertices >= FULL || self.waiting.len() >= MANY {
             self.draw_waiting();
+        }
+        self.reuse_memory();
+    }
+
+    /// Gives a batch that has none yet the memory of one that has been drawn.
+    fn reuse_memory(&mut self) {
+        if self.batch.positions.capacity() > 0 {
+            return;
+        }
+        if let Some(mut spare) = self.spare_batches.pop() {
+            (spare.kind, spare.layout) = (self.batch.kind, self.batch.layout);
+            std::mem::swap(&mut spare.state, &mut self.batch.state);
+            self.batch = spare;
         }
     }
 
