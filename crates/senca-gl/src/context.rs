@@ -166,6 +166,7 @@ impl Context {
             self.state.viewport.rect = rect;
             self.state.scissor = rect;
         }
+        self.begin_window();
         self.raster_changed = true;
         self.vertex_changed = true;
         true

@@ -1,6 +1,7 @@
 //! The window as those see it who show it.
 
 use crate::framebuffer::Window;
+use crate::pixel::unorm8_from_f32;
 use crate::texture::Texels;
 use crate::{Context, Enum};
 
@@ -17,6 +18,10 @@ pub enum Colors<'a> {
     Bytes(&'a [[u8; 4]]),
     /// Floating point.
     Floats(&'a [[f32; 4]]),
+    /// All pixels have one colour of 8 bits a component.
+    SameBytes([u8; 4]),
+    /// All pixels have one colour of floating point.
+    SameFloats([f32; 4]),
 }
 
 /// The buffers of a window while no context draws into it.
@@ -57,6 +62,8 @@ impl Context {
         let [width, height] = buffers.size();
         if !self.framebuffers.had_window {
             self.resize(width, height);
+            // These buffers are not new.
+            self.waiting_clear = self.waiting_clear.filter(|_| self.framebuffers.draw != 0);
         }
         self.exchange_window(buffers.0);
     }
@@ -74,6 +81,24 @@ impl Context {
         }
     }
 
+    /// Draws what is waiting, as [`Context::finish_window`], but where all of a window of one buffer has been cleared
+    /// and nothing drawn since, the clear may go on waiting for what will be drawn: only
+    /// [`Context::window_colors`] knows of it.
+    pub fn finish_for_show(&mut self) {
+        if !self.immediate.active() {
+            self.draw_gathered();
+            if !self.clears_shown() {
+                self.settle_clear();
+            }
+        }
+    }
+
+    /// `glFlush` and `glFinish` for who shows the window: as [`Context::finish_for_show`], but an error between
+    /// `begin` and `end`.
+    pub fn flush_for_show(&mut self) {
+        self.outside(Self::finish_for_show);
+    }
+
     /// The rows in which pixels of the window may have changed since this was last asked, the lowest being 0. What
     /// waits to be drawn does not count yet.
     pub fn take_changed_rows(&mut self) -> std::ops::Range<usize> {
@@ -81,12 +106,15 @@ impl Context {
         rows.start as usize..rows.end as usize
     }
 
-    /// The colours that the window shows, of as many pixels as it has; rows without space between.
+    /// The colours that the window shows, of as many pixels as it has; rows without space between. A clear that
+    /// [`Context::finish_for_show`] has left waiting counts as done.
     #[must_use]
     pub fn window_colors(&self) -> Colors<'_> {
-        match self.window_floats() {
-            [] => Colors::Bytes(self.window_pixels()),
-            floats => Colors::Floats(floats),
+        match (self.shown_clear(), self.window_floats()) {
+            (Some(color), []) => Colors::SameBytes(color.map(unorm8_from_f32)),
+            (Some(color), _) => Colors::SameFloats(color),
+            (None, []) => Colors::Bytes(self.window_pixels()),
+            (None, floats) => Colors::Floats(floats),
         }
     }
 
@@ -111,6 +139,46 @@ impl Context {
 #[cfg(test)]
 mod tests {
     use crate::{Config, Context, gl};
+
+    #[test]
+    fn a_clear_that_waits_is_shown_and_done_once_somebody_looks() {
+        use super::Colors;
+        let mut c = Context::new(Config::default());
+        assert!(c.resize(9, 3));
+        c.finish_for_show();
+        assert!(matches!(c.window_colors(), Colors::SameBytes([0, 0, 0, 0])));
+        assert_eq!((c.take_changed_rows(), c.take_changed_rows()), (0..3, 0..0));
+        c.clear_color([1.0, 0.0, 0.2, 1.0]);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.flush_for_show();
+        assert!(matches!(c.window_colors(), Colors::SameBytes([255, 0, 51, 255])));
+        assert_eq!(c.take_changed_rows(), 0..3);
+        // The clear goes on waiting, and is there for what is drawn then and for who looks at the buffers.
+        c.begin(gl::POINTS);
+        c.vertex([0.0, 0.0]);
+        c.end();
+        c.finish_for_show();
+        let Colors::Bytes(pixels) = c.window_colors() else { panic!("drawn to") };
+        assert_eq!((pixels[0], pixels[9 + 4]), ([255, 0, 51, 255], [255; 4]));
+        assert_eq!(c.window_depths(), [1.0; 27]);
+        c.clear(gl::COLOR_BUFFER_BIT);
+        c.finish();
+        assert!(matches!(c.window_colors(), Colors::Bytes(_)));
+        assert_eq!(c.window_pixels(), [[255, 0, 51, 255]; 27]);
+    }
+
+    #[test]
+    fn drawing_depths_alone_leaves_new_colors_black() {
+        let mut c = Context::new(Config::default());
+        assert!(c.resize(2, 2));
+        c.enable(gl::DEPTH_TEST);
+        c.color_mask([false; 4]);
+        c.begin(gl::TRIANGLES);
+        [[-1.0, -1.0, 0.0], [3.0, -1.0, 0.0], [-1.0, 3.0, 0.0]].into_iter().for_each(|v| c.vertex(v));
+        c.end();
+        c.finish();
+        assert_eq!((c.window_pixels(), c.window_depths()), (&[[0; 4]; 4][..], &[0.5; 4][..]));
+    }
 
     #[test]
     fn a_window_goes_from_one_context_to_another() {

@@ -1,7 +1,7 @@
 //! The program's picture: a piece of its memory that what is drawn is copied to.
 
 use rayon::prelude::*;
-use senca_gl::{Context, gl};
+use senca_gl::{Colors, Context, gl};
 use senca_gl_abi::current::Window;
 use senca_gl_abi::memory::Out;
 use std::ops::Range;
@@ -255,7 +255,7 @@ impl Picture {
 impl Window for Picture {
     /// Draws what is waiting and copies what has changed of the picture to the program's memory.
     fn present(&mut self, context: &mut Context) {
-        context.finish_window();
+        context.finish_for_show();
         if self.buffer == 0 {
             return;
         }
@@ -273,13 +273,19 @@ impl Window for Picture {
         let bytes = &mut bytes[lines.start * stride..(lines.end - 1) * stride + row];
         let first = lines.start;
         let from = |k: usize| if up { k } else { height - 1 - k };
+        let (mut same, pixels) = (vec![0; row], row / layout.bytes());
+        match context.window_colors() {
+            Colors::SameBytes(color) => layout.write_bytes(&vec![color; pixels], &mut same),
+            Colors::SameFloats(color) => layout.write_floats(&vec![color; pixels], clamp, &mut same),
+            Colors::Bytes(_) | Colors::Floats(_) => {}
+        }
         let write = |(k, to): (usize, &mut [u8])| {
             let at = from(first + k) * width;
             let to = &mut to[..row];
-            let pixels = row / layout.bytes();
             match context.window_colors() {
-                senca_gl::Colors::Bytes(all) => layout.write_bytes(&all[at..at + pixels], to),
-                senca_gl::Colors::Floats(all) => layout.write_floats(&all[at..at + pixels], clamp, to),
+                Colors::Bytes(all) => layout.write_bytes(&all[at..at + pixels], to),
+                Colors::Floats(all) => layout.write_floats(&all[at..at + pixels], clamp, to),
+                Colors::SameBytes(_) | Colors::SameFloats(_) => to.copy_from_slice(&same),
             }
         };
         if bytes.len() < PARALLEL_BYTES {

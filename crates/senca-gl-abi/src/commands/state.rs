@@ -8,11 +8,11 @@ commands! { COMMANDS, c:
     glIsEnabled(cap: u32) -> u8 { c.is_enabled(cap).into() }
     glGetError() -> u32 { c.get_error() }
     glFlush() {
-        c.flush();
+        c.flush_for_show();
         c.present();
     }
     glFinish() {
-        c.finish();
+        c.flush_for_show();
         c.present();
     }
     glHint(target: u32, mode: u32) { c.hint(target, mode) }

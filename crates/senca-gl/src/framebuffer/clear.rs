@@ -19,6 +19,8 @@ pub(crate) struct WaitingClear {
     pub(crate) area: Area,
     /// Whether these are all of what is drawn to.
     pub(crate) is_whole: bool,
+    /// Whether the planes are new: colours that are to be 0 need not be set.
+    is_fresh: bool,
 }
 
 impl WaitingClear {
@@ -28,6 +30,18 @@ impl WaitingClear {
         to.color = from.color.or(to.color);
         to.depth = from.depth.or(to.depth);
         to.stencil = from.stencil.or(to.stencil);
+    }
+
+    /// What of it is to be done along with what is drawn. New colours are 0 already, and stay untouched if nobody
+    /// draws to them.
+    pub(crate) fn for_draw(mut self, draws_colors: bool) -> Self {
+        self.values.color = self.values.color.filter(|color| draws_colors || !self.keeps(*color));
+        self
+    }
+
+    /// Whether colours are this one already.
+    fn keeps(&self, color: [f32; 4]) -> bool {
+        self.is_fresh && color == [0.0; 4]
     }
 
     /// Whether another one clears none of the buffers that this one does.
@@ -172,7 +186,38 @@ impl Context {
             }
             values.stencil = Some(s.stencil.clear as u8);
         }
-        Some(WaitingClear { values, area, is_whole: area == whole })
+        Some(WaitingClear { values, area, is_whole: area == whole, is_fresh: false })
+    }
+
+    /// Black and the farthest depth for the planes of a new window, which are zeros that nobody has touched yet: a
+    /// clear that waits. Stencil values are 0 already.
+    pub(crate) fn begin_window(&mut self) {
+        let values = Clear { color: Some([0.0; 4]), depth: Some(1.0), id: None, stencil: None };
+        if self.framebuffers.draw == 0 {
+            let mut planes = self.framebuffers.take_planes();
+            let values = Clear {
+                color: values.color.filter(|_| planes.color_count() == 1),
+                depth: values.depth.filter(|_| planes.depth().is_some()),
+                ..values
+            };
+            let area = planes.area();
+            self.framebuffers.put_back(planes);
+            self.waiting_clear = Some(WaitingClear { values, area, is_whole: true, is_fresh: true });
+        } else {
+            self.framebuffers.window.fill_depths(1.0);
+        }
+    }
+
+    /// The colour that all pixels of the window that is shown are still to be set to.
+    pub(crate) fn shown_clear(&self) -> Option<[f32; 4]> {
+        let clear = self.waiting_clear.filter(|_| self.clears_shown());
+        clear.and_then(|clear| clear.values.color)
+    }
+
+    /// Whether what is drawn to is a window of one colour buffer, all of which waits to be cleared.
+    pub(crate) fn clears_shown(&self) -> bool {
+        let is_shown = self.framebuffers.draw == 0 && !self.framebuffers.config.double_buffered;
+        is_shown && self.waiting_clear.is_some_and(|clear| clear.is_whole)
     }
 
     /// Does the clear that waits.
@@ -185,7 +230,7 @@ impl Context {
     fn do_clear(&mut self, clear: &WaitingClear) {
         let WaitingClear { values, area, .. } = *clear;
         let mut planes = self.framebuffers.take_planes();
-        if let Some(color) = values.color {
+        if let Some(color) = values.color.filter(|color| !clear.keeps(*color)) {
             planes.colors_mut().for_each(|plane| fill_color(plane, area, color, [true; 4]));
         }
         if let (Some(plane), Some(depth)) = (planes.depth(), values.depth) {

@@ -31,7 +31,7 @@ impl Window {
         changed: 0..0,
     };
 
-    /// Buffers of a size, black, with depth 1; `None` if memory does not suffice.
+    /// Buffers of a size, all zeros; `None` if memory does not suffice.
     pub(crate) fn new(config: Config, width: u32, height: u32) -> Option<Self> {
         let color =
             InternalFormat::for_renderbuffer(if config.float_color { gl::RGBA16 } else { gl::RGBA8 })?;
@@ -43,18 +43,23 @@ impl Window {
             (false, true) => Some(gl::STENCIL_INDEX8),
             (false, false) => None,
         };
-        let mut depth_stencil = match token.and_then(InternalFormat::for_renderbuffer) {
+        let depth_stencil = match token.and_then(InternalFormat::for_renderbuffer) {
             Some(format) => Some(Plane::new(format, width, height, 0)?),
             None => None,
         };
-        if let Some(depths) = depth_stencil.as_mut().and_then(|plane| plane.texels_mut().depths_mut()) {
-            depths.fill(1.0);
-        }
         let accumulation = match config.accum_bits {
             0 => None,
             _ => Some(Accumulation::new(width, height)?),
         };
         Some(Self { width, height, colors, depth_stencil, accumulation, changed: 0..height })
+    }
+
+    /// Gives all pixels a depth.
+    pub(crate) fn fill_depths(&mut self, depth: f32) {
+        let plane = self.depth_stencil.as_mut();
+        if let Some(depths) = plane.and_then(|plane| plane.texels_mut().depths_mut()) {
+            depths.fill(depth);
+        }
     }
 
     /// Exchanges front and back buffer, if there are two.

@@ -24,6 +24,8 @@ impl Context {
         let clear = self.waiting_clear.filter(|clear| clears_along(clear, first));
         // What is not cleared is left alone by what is drawn.
         let clear = clear.filter(|clear| clear.is_whole || clear.area.contains(area_of_all(batches)));
+        let draws_colors = batches.iter().any(|batch| batch.state.color.mask != [false; 4]);
+        let clear = clear.map(|clear| clear.for_draw(draws_colors));
         match clear {
             Some(_) => self.waiting_clear = None,
             None => self.settle_clear(),
