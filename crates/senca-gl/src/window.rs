@@ -87,7 +87,9 @@ impl Context {
     pub fn finish_for_show(&mut self) {
         if !self.immediate.active() {
             self.draw_gathered();
-            if !self.clears_shown() {
+            if self.clears_shown() {
+                self.settle_new_planes();
+            } else {
                 self.settle_clear();
             }
         }

@@ -21,6 +21,10 @@ pub(crate) struct WaitingClear {
     pub(crate) is_whole: bool,
     /// Whether the planes are new: colours that are to be 0 need not be set.
     is_fresh: bool,
+    /// Whether the window has not been shown yet.
+    is_new: bool,
+    /// Whether the program has asked for it.
+    is_asked: bool,
 }
 
 impl WaitingClear {
@@ -30,6 +34,12 @@ impl WaitingClear {
         to.color = from.color.or(to.color);
         to.depth = from.depth.or(to.depth);
         to.stencil = from.stencil.or(to.stencil);
+        self.is_asked |= later.is_asked;
+    }
+
+    /// Whether it is worth while to do it along with what is drawn: what nobody has asked for is next to nothing.
+    pub(crate) fn is_worth_waiting(&self) -> bool {
+        self.is_asked
     }
 
     /// What of it is to be done along with what is drawn. New colours are 0 already, and stay untouched if nobody
@@ -186,7 +196,14 @@ impl Context {
             }
             values.stencil = Some(s.stencil.clear as u8);
         }
-        Some(WaitingClear { values, area, is_whole: area == whole, is_fresh: false })
+        Some(WaitingClear {
+            values,
+            area,
+            is_whole: area == whole,
+            is_fresh: false,
+            is_new: false,
+            is_asked: true,
+        })
     }
 
     /// Black and the farthest depth for the planes of a new window, which are zeros that nobody has touched yet: a
@@ -202,10 +219,25 @@ impl Context {
             };
             let area = planes.area();
             self.framebuffers.put_back(planes);
-            self.waiting_clear = Some(WaitingClear { values, area, is_whole: true, is_fresh: true });
+            let clear =
+                WaitingClear { values, area, is_whole: true, is_fresh: true, is_new: true, is_asked: false };
+            self.waiting_clear = Some(clear);
         } else {
             self.framebuffers.window.fill_depths(1.0);
         }
+    }
+
+    /// Makes a new window ready that is shown for the first time: with its depths, and if the program has cleared
+    /// it already, with all that it asked for.
+    pub(crate) fn settle_new_planes(&mut self) {
+        let Some(clear) = self.waiting_clear.as_mut().filter(|clear| clear.is_new) else { return };
+        if clear.is_asked {
+            return self.settle_clear();
+        }
+        let depths = Clear { color: None, depth: clear.values.depth.take(), id: None, stencil: None };
+        clear.is_new = false;
+        let depths = WaitingClear { values: depths, ..*clear };
+        self.do_clear(&depths);
     }
 
     /// The colour that all pixels of the window that is shown are still to be set to.

@@ -21,7 +21,7 @@ impl Context {
     /// Draws batches that go together; returns how many samples passed.
     pub(crate) fn draw_batches(&mut self, batches: &[Batch]) -> u64 {
         let Some(first) = batches.first() else { return 0 };
-        let clear = self.waiting_clear.filter(|clear| clears_along(clear, first));
+        let clear = self.waiting_clear.filter(|clear| clear.is_worth_waiting() && clears_along(clear, first));
         // What is not cleared is left alone by what is drawn.
         let clear = clear.filter(|clear| clear.is_whole || clear.area.contains(area_of_all(batches)));
         let draws_colors = batches.iter().any(|batch| batch.state.color.mask != [false; 4]);
