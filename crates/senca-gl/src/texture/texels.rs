@@ -28,9 +28,11 @@ pub(crate) enum Texels {
 
 /// `count` copies of `value`, `None` if memory does not suffice.
 ///
-/// The try is given back at once: a vector of zeros made afterwards takes untouched pages of the system.
+/// The try is given back at once: a vector of zeros made afterwards takes untouched pages of the system. It is for
+/// more than allocators keep, which would else give the same memory again, to be set to zeros.
 pub(crate) fn filled<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
-    Vec::<T>::new().try_reserve_exact(count).ok()?;
+    const MUCH: usize = (1 << 26) + 1;
+    Vec::<T>::new().try_reserve_exact(count.max(MUCH.div_ceil(size_of::<T>().max(1)))).ok()?;
     Some(vec![value; count])
 }
 
