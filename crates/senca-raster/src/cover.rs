@@ -271,7 +271,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         for by in top..=bottom {
             let mut active = 0u32;
             for bx in first..=last {
-                active |= u32::from(self.block(lane, bx, by)) << bx;
+                active |= u32::from(self.block(simd, lane, bx, by)) << bx;
             }
             self.row_of_blocks(simd, lane, &lanes, by, [y0, y1], [active, 0]);
         }
@@ -337,7 +337,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         while missing != 0 {
             let block = at + missing.trailing_zeros() as usize;
             missing &= missing - 1;
-            self.buffer.fetch(self.band, self.tile[0] as usize, block, &self.pass.touches);
+            self.buffer.fetch(simd, self.band, self.tile[0] as usize, block, &self.pass.touches);
         }
         if !self.pass.hides_farther || active == 0 {
             return [active, full & active, 0];
@@ -417,10 +417,10 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// Whether a block of a small triangle is to be drawn. Brings it in if so.
     #[inline(always)]
-    fn block(&mut self, lane: usize, bx: i32, by: i32) -> bool {
+    fn block<S: Simd>(&mut self, simd: S, lane: usize, bx: i32, by: i32) -> bool {
         let block = (by * 8 + bx) as usize & 63;
         if self.buffer.present >> block & 1 == 0 {
-            self.buffer.fetch(self.band, self.tile[0] as usize, block, &self.pass.touches);
+            self.buffer.fetch(simd, self.band, self.tile[0] as usize, block, &self.pass.touches);
         }
         let b = &*self.batch;
         let nearest = if self.pass.reversed { -b.z_max[lane] } else { b.z_min[lane] };

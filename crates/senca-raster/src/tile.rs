@@ -19,6 +19,8 @@ const FEW_BLOCKS: u32 = 8;
 
 /// Blocks along a side of a tile.
 pub(crate) const BLOCKS: usize = TILE / 8;
+/// Blocks of a tile.
+const COUNT: usize = BLOCKS * BLOCKS;
 
 /// A quantity of the pixels of a block: four vectors, each two rows of 8 pixels.
 pub(crate) type Block<T> = [[T; LANES]; 4];
@@ -213,7 +215,22 @@ impl TileBuffer {
     /// Brings a block in, from the target or freshly cleared.
     #[cold]
     #[inline(never)]
-    pub(crate) fn fetch(&mut self, band: &Band<'_>, tile_x: usize, block: usize, touches: &Touches) {
+    pub(crate) fn fetch<S: Simd>(
+        &mut self,
+        simd: S,
+        band: &Band<'_>,
+        tile_x: usize,
+        block: usize,
+        touches: &Touches,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.fetch_block(band, tile_x, block, touches),
+        );
+    }
+
+    #[inline(always)]
+    fn fetch_block(&mut self, band: &Band<'_>, tile_x: usize, block: usize, touches: &Touches) {
         let clear = touches.clear.filter(|_| self.cleared >> block & 1 == 1);
         if self.present == 0 {
             self.open_forms(band, tile_x / TILE, touches);
@@ -324,6 +341,7 @@ impl TileBuffer {
 
     /// Between two draws in the same tile: blocks are kept as the next one wants them, and what is known
     /// of their depths is found anew.
+    #[inline(always)]
     pub(crate) fn pass_on(&mut self, band: &Band<'_>, before: &Pass<'_>, next: &Pass<'_>) {
         if before.touches.samples != next.touches.samples {
             blocks_of(self.present)
@@ -344,6 +362,7 @@ impl TileBuffer {
         self.level &= if before.reversed == next.reversed { u64::MAX } else { 0 };
     }
 
+    #[inline(always)]
     fn clear_color(&mut self, block: usize, rgba: [f32; 4], band: &Band<'_>) {
         match band.color {
             Some(ColorPlane::Rgba8(_)) => {
@@ -358,6 +377,7 @@ impl TileBuffer {
         }
     }
 
+    #[inline(always)]
     fn fetch_color(&mut self, band: &Band<'_>, tile_x: usize, block: usize) {
         if let Some(ColorPlane::Rgba8(p)) = &band.color
             && let Some(rows) = whole_rows(p, band, tile_x, block)
@@ -389,7 +409,16 @@ impl TileBuffer {
     }
 
     /// Takes the blocks that have been written back to the target. With `clear`, the others are cleared.
-    pub(crate) fn store(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
+    #[inline(always)]
+    pub(crate) fn store<S: Simd>(&mut self, simd: S, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.store_blocks(band, tile_x, touches),
+        );
+    }
+
+    #[inline(always)]
+    fn store_blocks(&mut self, band: &mut Band<'_>, tile_x: usize, touches: &Touches) {
         let cleared = self.cleared;
         let clear = touches.clear.filter(|_| cleared != 0);
         let (width, height) = (band.width, band.height);
@@ -407,7 +436,9 @@ impl TileBuffer {
         match (band.color.as_mut().filter(|_| touches.color || color.is_some()), color) {
             (Some(ColorPlane::Rgba8(p)), clear) => {
                 let clear = clear.map(rgba8_from_rgba);
-                rows.store(p, clear, |block, row| eight(&self.rgba8[block], row).map(u32::to_le_bytes));
+                rows.store(p, clear, |block, row| {
+                    eight(&self.rgba8[block % COUNT], row).map(u32::to_le_bytes)
+                });
             }
             (Some(ColorPlane::Rgba32F(p)), clear) => rows.store(p, clear, |block, row| {
                 let at = |k: usize, x: usize| self.rgba[k][block].as_flattened()[row + x];
@@ -417,17 +448,17 @@ impl TileBuffer {
         }
         let depth = clear.and_then(|c| c.depth);
         if let Some(p) = band.depth.as_mut().filter(|_| touches.depth || depth.is_some()) {
-            rows.store(p, depth, |block, row| eight(&self.depth[block], row));
+            rows.store(p, depth, |block, row| eight(&self.depth[block % COUNT], row));
         }
         if let Some(depths) = &mut band.blocks {
             self.store_forms(depths, tile_x / TILE, depth.filter(|_| seen == 0), present & !formed);
         }
         let stencil = clear.and_then(|c| c.stencil);
         if let Some(p) = band.stencil.as_mut().filter(|_| touches.stencil || stencil.is_some()) {
-            rows.store(p, stencil, |block, row| eight(&self.stencil[block], row));
+            rows.store(p, stencil, |block, row| eight(&self.stencil[block % COUNT], row));
         }
         if let Some(p) = &mut band.ids {
-            rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block], row));
+            rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block % COUNT], row));
         }
     }
 }
@@ -494,6 +525,12 @@ impl Rows {
                 continue;
             }
             let (whole, rest) = row.as_chunks_mut::<8>();
+            if let (255, Some(whole)) = (present, whole.first_chunk_mut::<BLOCKS>()) {
+                for (bx, to) in whole.iter_mut().enumerate() {
+                    *to = get(y / 8 * BLOCKS + bx, y % 8 * 8);
+                }
+                continue;
+            }
             let last = whole.len();
             for (bx, to) in whole.iter_mut().enumerate() {
                 if present >> bx & 1 == 1 {
@@ -517,6 +554,7 @@ impl Rows {
 
 impl Rows {
     /// Writes the blocks that are present, one after another.
+    #[inline(always)]
     fn store_few<T: Copy>(&self, plane: &mut [T], get: impl Fn(usize, usize) -> [T; 8]) {
         let mut left = self.present;
         while left != 0 {
@@ -535,6 +573,7 @@ impl Rows {
     }
 }
 
+#[inline(always)]
 fn fill<T: Copy>(block: &mut Block<T>, value: T) {
     block.as_flattened_mut().fill(value);
 }
@@ -564,6 +603,7 @@ fn whole_rows<'p, T>(
     Some(rows)
 }
 
+#[inline(always)]
 fn fetch_plane<T: Copy>(to: &mut Block<T>, plane: &[T], band: &Band<'_>, tile_x: usize, block: usize) {
     if let Some(rows) = whole_rows(plane, band, tile_x, block) {
         for (to, row) in to.as_flattened_mut().as_chunks_mut::<8>().0.iter_mut().zip(rows) {

@@ -488,13 +488,13 @@ impl Frame<'_> {
                     continue;
                 }
                 if let Some(before) = before {
-                    scratch.tile.pass_on(band, &before.pass, &part.pass);
+                    dispatch!(level, _simd => scratch.tile.pass_on(band, &before.pass, &part.pass));
                 }
                 counts = part.draw(level, tile, band, scratch, counts);
                 before = Some(part);
             }
             if let Some(last) = before.or(self.parts.first().filter(|_| self.clears)) {
-                scratch.tile.store(band, column * TILE, &last.pass.touches);
+                dispatch!(level, simd => scratch.tile.store(simd, band, column * TILE, &last.pass.touches));
             }
         }
         counts
