@@ -248,7 +248,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             [edge_lanes(simd, b, 0, lane), edge_lanes(simd, b, 1, lane), edge_lanes(simd, b, 2, lane)];
         let (first, last) = (x0 >> 3, (x1 - 1) >> 3);
         let (top, bottom) = (y0 >> 3, (y1 - 1) >> 3);
-        if last - first > 1 {
+        if last - first > 1 || bottom - top > 2 {
             // Two rows of blocks at a time.
             for by in (top & !1..=bottom).step_by(2) {
                 let [active, full, level] = self.blocks(simd, lane, &lanes, by, [first, last], [top, bottom]);
@@ -441,6 +441,8 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let y = 8 * by + 2 * pair;
         let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, (b.offset[1][lane] + y) as f32);
         let row = Row { fy, depth: row_of(simd, &b.depth, lane, fy) };
+        let edges: [i32x16<S>; 3] = std::array::from_fn(|k| lanes[k] + edge_at(simd, b, k, lane, [0, y]));
+        let steps: [i32; 3] = std::array::from_fn(|k| b.edge_dx[k][lane] << 3);
         let mut left = active;
         while left != 0 {
             let bx = left.trailing_zeros() as i32;
@@ -448,11 +450,8 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let place = Place { lane, block: (8 * by + bx) as usize & 63, pair: pair as usize & 3 };
             let mut inside = mask32x16::splat(simd, true);
             if full >> bx & 1 == 0 {
-                let b = &*self.batch;
-                let e0 = lanes[0] + edge_at(simd, b, 0, lane, [8 * bx, y]);
-                let e1 = lanes[1] + edge_at(simd, b, 1, lane, [8 * bx, y]);
-                let e2 = lanes[2] + edge_at(simd, b, 2, lane, [8 * bx, y]);
-                inside = (e0 | e1 | e2).simd_ge(i32x16::splat(simd, 0));
+                let at = |k: usize| edges[k] + i32x16::splat(simd, steps[k].wrapping_mul(bx));
+                inside = (at(0) | at(1) | at(2)).simd_ge(i32x16::splat(simd, 0));
                 if self.partial {
                     inside &= self.within_bounds(simd, bx * 8, y);
                 }
