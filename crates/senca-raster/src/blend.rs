@@ -17,8 +17,9 @@ pub(crate) fn unpack<S: Simd>(simd: S, packed: u32x16<S>) -> Rgba<S> {
     ]
 }
 
+/// The low bytes, as numbers 0 to 1.
 #[inline(always)]
-fn channel<S: Simd>(simd: S, packed: u32x16<S>) -> f32x16<S> {
+pub(crate) fn channel<S: Simd>(simd: S, packed: u32x16<S>) -> f32x16<S> {
     let byte = packed & u32x16::splat(simd, 255);
     let float: f32x16<S> = byte.bitcast::<i32x16<S>>().to_float();
     float * f32x16::splat(simd, 1.0 / 255.0)
@@ -31,8 +32,9 @@ pub(crate) fn pack<S: Simd>(simd: S, rgba: Rgba<S>) -> u32x16<S> {
     byte(simd, r) | (byte(simd, g) << 8) | (byte(simd, b) << 16) | (byte(simd, a) << 24)
 }
 
+/// One channel of [`pack`], in the low byte.
 #[inline(always)]
-fn byte<S: Simd>(simd: S, v: f32x16<S>) -> u32x16<S> {
+pub(crate) fn byte<S: Simd>(simd: S, v: f32x16<S>) -> u32x16<S> {
     let clamped = v.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
     let int: i32x16<S> = (clamped * f32x16::splat(simd, 255.0) + f32x16::splat(simd, 0.5)).to_int();
     int.bitcast::<u32x16<S>>()

@@ -51,6 +51,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) color: ColorPath,
     /// The texture the colour is multiplied by, and the slot of u.
     pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
+    /// Fragments are given a textured colour, and nothing else is done.
+    pub(crate) texture_only: bool,
     /// Texels of its levels, if they have 8 bits.
     pub(crate) texels: Vec<&'a [[u8; 4]]>,
     /// Which varyings are interpolated.
@@ -300,6 +302,11 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let (top, bottom) = ((y0 - by * 8).max(0) >> 1, (y1 - 1 - by * 8).min(7) >> 1);
         if !FAST && self.pass.depth_only {
             return self.depths(simd, lane, lanes, by, [top, bottom], [active, full]);
+        }
+        let mut active = active;
+        if self.pass.texture_only {
+            self.wait_blocks(simd, lane, by, active & full);
+            active &= !full;
         }
         for pair in top..=bottom {
             self.row(simd, lane, lanes, [by, pair], [active, full]);

@@ -254,16 +254,16 @@ fn remainder<S: Simd>(simd: S, i: I<S>, n: i32) -> I<S> {
     rest.max(zero).min(n - I::splat(simd, 1))
 }
 
-/// Number of the nearest texel.
+/// Number of the nearest texel. All coordinates are within [`FARTHEST_TAME`] of 0 if `TAME`.
 #[inline(always)]
-pub(crate) fn nearest_index<S: Simd>(
+pub(crate) fn nearest_index<S: Simd, const TAME: bool>(
     simd: S,
     sampler: &Sampler,
     level: &TextureLevel,
     uv: [F<S>; 2],
 ) -> I<S> {
-    let x = position::<S, false>(simd, sampler.grid, uv[0], level.width);
-    let y = position::<S, false>(simd, sampler.grid, uv[1], level.height);
+    let x = position::<S, TAME>(simd, sampler.grid, uv[0], level.width);
+    let y = position::<S, TAME>(simd, sampler.grid, uv[1], level.height);
     let half = F::splat(simd, 0.5);
     let i = wrapped(simd, sampler.wrap_u, (x + half).floor().to_int(), level.width);
     let j = wrapped(simd, sampler.wrap_v, (y + half).floor().to_int(), level.height);
@@ -272,7 +272,7 @@ pub(crate) fn nearest_index<S: Simd>(
 
 #[inline(always)]
 fn nearest<S: Simd>(simd: S, sampler: &Sampler, level: &TextureLevel, uv: [F<S>; 2]) -> Rgba<S> {
-    let index = nearest_index(simd, sampler, level, uv);
+    let index = nearest_index::<S, false>(simd, sampler, level, uv);
     match &level.texels {
         Texels::Rgba8(texels) => crate::blend::unpack(simd, gather(simd, texels, index)),
         Texels::Shared(texels) => crate::blend::unpack(simd, gather(simd, texels.get(), index)),
@@ -387,11 +387,19 @@ pub(crate) fn quads<S: Simd>(simd: S, from: &Quads) -> [[u32x16<S>; 2]; 2] {
 
 /// Mean of four texels, weighted by the position between them.
 #[inline(always)]
-pub(crate) fn mixed<S: Simd>(
+fn mixed<S: Simd>(simd: S, texels: [[u32x16<S>; 2]; 2], between: [I<S>; 2]) -> Rgba<S> {
+    let [rb, ga] = sums(simd, texels, between);
+    [low(simd, rb), low(simd, ga), low(simd, rb >> 16), low(simd, ga >> 16)]
+}
+
+/// 256 times the mean of four texels, weighted by the position between them: red in the lower half and
+/// blue in the upper; green and alpha.
+#[inline(always)]
+pub(crate) fn sums<S: Simd>(
     simd: S,
     [[t00, t10], [t01, t11]]: [[u32x16<S>; 2]; 2],
     [s, t]: [I<S>; 2],
-) -> Rgba<S> {
+) -> [u32x16<S>; 2] {
     let w11 = (s * t + I::splat(simd, 128)) >> 8;
     let weights = [I::splat(simd, 256) - s - t + w11, s - w11, t - w11, w11];
     let texels = [t00, t10, t01, t11];
@@ -404,12 +412,12 @@ pub(crate) fn mixed<S: Simd>(
         rb += (texels[k] & mask) * w;
         ga += ((texels[k] >> 8) & mask) * w;
     }
-    [low(simd, rb), low(simd, ga), low(simd, rb >> 16), low(simd, ga >> 16)]
+    [rb, ga]
 }
 
-/// The lower half of a sum of [`mixed`], as a number 0 to 1.
+/// The lower half of one of [`sums`], as a number 0 to 1.
 #[inline(always)]
-fn low<S: Simd>(simd: S, v: u32x16<S>) -> F<S> {
+pub(crate) fn low<S: Simd>(simd: S, v: u32x16<S>) -> F<S> {
     let int: I<S> = (v & u32x16::splat(simd, 0xffff)).bitcast();
     int.to_float::<F<S>>() * F::splat(simd, 1.0 / (255.0 * 256.0))
 }

@@ -13,17 +13,20 @@
 //! Each stage is a loop of its own: within a vector nearly every step waits for the one before, and a
 //! processor finds the work of the next vectors to fill that time only when it is not far ahead.
 //!
+//! Two levels are mixed in integers, with a share in 1/256.
+//!
 //! This holds for linear filters on texels of 8 bits, and, with fewer stages, for the nearest texel of a
 //! single level; other textures are read vector by vector ([`crate::sample`]).
 
 use crate::api::{LANES, MAX_VARYINGS, TextureUnit};
-use crate::blend::{Rgba, unpack};
+use crate::blend::{Rgba, byte, channel};
 use crate::cover::{At, ColorPath, Place, TileDraw, colors, lanes_from, splat4, varying};
 use crate::sample::{
-    FARTHEST_TAME, Quads, footprint, gather_words, lerp, load4, lod_of, mixed, nearest_index, pair_texels,
-    quads, sample, taps,
+    FARTHEST_TAME, Quads, footprint, gather_words, load4, lod_of, low, nearest_index, pair_texels, quads,
+    sample, sums, taps,
 };
 use crate::texture::{Filter, Mip, Texture, TextureLevel};
+use crate::tile::BLOCKS;
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// Vectors kept at most.
@@ -61,10 +64,12 @@ struct Lookup {
     uv: [[f32; LANES]; 2],
     /// Whether all coordinates are within [`FARTHEST_TAME`] of 0.
     tame: bool,
-    /// Square of the longer side of a pixel, in texels of level 0; then the number of the finer level.
-    level: [f32; LANES],
-    /// Share of the coarser level.
-    share: [f32; LANES],
+    /// Square of the longer side of a pixel, in texels of level 0.
+    footprint: [f32; LANES],
+    /// Number of the finer level.
+    level: [i32; LANES],
+    /// Share of the coarser level, in 1/256.
+    share: [i32; LANES],
     /// What the texture is multiplied by, unless it is the same everywhere.
     color: [[f32; LANES]; 4],
     /// Numbers of the nearest texels, and those.
@@ -132,6 +137,33 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         self.queue.len += 1;
     }
 
+    /// Keeps the whole blocks of row `by` whose bits are set, where nothing but the texture counts.
+    #[inline(always)]
+    pub(crate) fn wait_blocks<S: Simd>(&mut self, simd: S, lane: usize, by: i32, blocks: u32) {
+        let mut left = blocks & 255;
+        while left != 0 {
+            let bx = left.trailing_zeros() as i32;
+            left &= left - 1;
+            if self.queue.len + 4 > WAITING {
+                self.shade_waiting(simd);
+            }
+            let b = &self.batch.offset;
+            let (x, y) = ((b[0][lane] + 8 * bx) as f32, b[1][lane] + 8 * by);
+            let block = (8 * by + bx) as usize % (BLOCKS * BLOCKS);
+            for pair in 0..4 {
+                let (place, offset) = (Place { lane, block, pair }, [x, (y + 2 * pair as i32) as f32]);
+                self.queue.waiting[(self.queue.len + pair) % WAITING] =
+                    Waiting { place, offset, bits: u16::MAX };
+            }
+            self.queue.len += 4;
+            self.buffer.written |= 1 << block;
+        }
+        let count = 64 * u64::from((blocks & 255).count_ones());
+        self.counts.tested += count;
+        self.counts.passed += count;
+        self.counts.shaded += count;
+    }
+
     /// Colours and writes the vectors that wait.
     ///
     /// A function of its own in the compiled kernel: inlined, it makes code of many megabytes.
@@ -158,6 +190,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             }
             return;
         }
+        if !has_levels(unit) {
+            return self.shade_one_level(simd, unit, slot, count);
+        }
         for k in 0..count {
             self.look(simd, unit, slot, k);
         }
@@ -172,8 +207,8 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             while left != 0 {
                 let lookup = &self.queue.lookups[k];
                 let number = lookup.level[left.trailing_zeros() as usize % LANES];
-                let levels = f32x16::load_array_ref(simd, &lookup.level);
-                let here = levels.simd_eq(f32x16::splat(simd, number)).to_bitmask() as u32 & left;
+                let levels = i32x16::load_array_ref(simd, &lookup.level);
+                let here = levels.simd_eq(i32x16::splat(simd, number)).to_bitmask() as u32 & left;
                 left &= !here;
                 let job = &mut self.queue.staged[staged % STAGED];
                 (job.place, job.bits, job.lookup) = (vector.place, here as u16, k);
@@ -189,6 +224,25 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         self.finish(simd, staged);
     }
 
+    /// Vectors that read the only level.
+    #[inline(always)]
+    fn shade_one_level<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, slot: usize, count: usize) {
+        let level = &unit.texture.levels[0];
+        for first in (0..count).step_by(STAGED) {
+            let staged = (count - first).min(STAGED);
+            for k in 0..staged {
+                let vector = self.queue.waiting[(first + k) % WAITING];
+                let (uv, at) = self.coordinates(simd, &vector, slot);
+                self.keep_color(simd, &at, vector.place.lane, first + k);
+                let job = &mut self.queue.staged[k];
+                (job.place, job.bits, job.lookup) = (vector.place, vector.bits, first + k);
+                (job.level, job.two_levels) = (0, false);
+                job.taps[0].address(simd, unit, level, uv, are_tame(simd, uv));
+            }
+            self.finish(simd, staged);
+        }
+    }
+
     /// Vectors that read the nearest texel of the only level.
     #[inline(always)]
     fn shade_sharp<S: Simd>(
@@ -200,33 +254,66 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         count: usize,
     ) {
         let level = &unit.texture.levels[0];
-        let constant = matches!(self.pass.color, ColorPath::Constant(_));
         for k in 0..count {
             let vector = self.queue.waiting[k];
-            let lane = vector.place.lane;
-            let at = self.at_vector(simd, &vector);
-            let [u, v] =
-                [&self.batch.varyings[slot % MAX_VARYINGS], &self.batch.varyings[(slot + 1) % MAX_VARYINGS]];
-            let uv = [varying(simd, u, lane, &at), varying(simd, v, lane, &at)];
-            let color = self.base_color(simd, lane, &at);
-            let lookup = &mut self.queue.lookups[k];
-            nearest_index(simd, &unit.sampler, level, uv).store_array(&mut lookup.number);
-            if !constant {
-                store4(color, &mut lookup.color);
-            }
+            let (uv, at) = self.coordinates(simd, &vector, slot);
+            self.keep_color(simd, &at, vector.place.lane, k);
+            let index = if are_tame(simd, uv) {
+                nearest_index::<S, true>(simd, &unit.sampler, level, uv)
+            } else {
+                nearest_index::<S, false>(simd, &unit.sampler, level, uv)
+            };
+            index.store_array(&mut self.queue.lookups[k].number);
         }
         for lookup in &mut self.queue.lookups[..count] {
             gather_words(texels, &lookup.number, &mut lookup.texel);
         }
         for k in 0..count {
-            let (vector, lookup) = (self.queue.waiting[k], &self.queue.lookups[k]);
-            let color = match self.pass.color {
-                ColorPath::Constant(rgba) => splat4(simd, rgba),
-                _ => load4(simd, &lookup.color),
-            };
-            let texel = unpack(simd, u32x16::load_array_ref(simd, &lookup.texel));
-            let mask = mask32x16::from_bitmask(simd, u64::from(vector.bits));
-            self.write(simd, vector.place, mask, times(color, texel));
+            let vector = self.queue.waiting[k];
+            let texel = u32x16::load_array_ref(simd, &self.queue.lookups[k].texel);
+            self.put(simd, vector.place, vector.bits, k, Single(texel));
+        }
+    }
+
+    /// Writes texels times colour, which is found with the lookup of number `lookup`.
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, simd: S, place: Place, bits: u16, lookup: usize, texels: impl ReadTexels<S>) {
+        let mask = mask32x16::from_bitmask(simd, u64::from(bits));
+        let color = match self.pass.color {
+            ColorPath::Constant(rgba) if FAST => {
+                // Where the colour is 1, the bytes are what they are.
+                let packed = tinted(simd, texels.bytes(simd), 0, rgba[0], &texels);
+                let packed = tinted(simd, packed, 1, rgba[1], &texels);
+                let packed = tinted(simd, packed, 2, rgba[2], &texels);
+                let packed = tinted(simd, packed, 3, rgba[3], &texels);
+                let plane = &mut self.buffer.rgba8[place.block % (BLOCKS * BLOCKS)][place.pair % 4];
+                let stored = u32x16::load_array_ref(simd, plane);
+                return mask.select(packed, stored).store_array(plane);
+            }
+            ColorPath::Constant(rgba) => splat4(simd, rgba),
+            _ => load4(simd, &self.queue.lookups[lookup % WAITING].color),
+        };
+        let texel =
+            [texels.number(simd, 0), texels.number(simd, 1), texels.number(simd, 2), texels.number(simd, 3)];
+        self.write(simd, place, mask, times(color, texel));
+    }
+
+    /// Texture coordinates of a vector that waits.
+    #[inline(always)]
+    fn coordinates<S: Simd>(&self, simd: S, vector: &Waiting, slot: usize) -> ([f32x16<S>; 2], At<S>) {
+        let lane = vector.place.lane;
+        let at = self.at_vector(simd, vector);
+        let [u, v] =
+            [&self.batch.varyings[slot % MAX_VARYINGS], &self.batch.varyings[(slot + 1) % MAX_VARYINGS]];
+        ([varying(simd, u, lane, &at), varying(simd, v, lane, &at)], at)
+    }
+
+    /// Puts the colour by the lookup of number `k`, unless it is the same everywhere.
+    #[inline(always)]
+    fn keep_color<S: Simd>(&mut self, simd: S, at: &At<S>, lane: usize, k: usize) {
+        if !matches!(self.pass.color, ColorPath::Constant(_)) {
+            let color = self.base_color(simd, lane, at);
+            store4(color, &mut self.queue.lookups[k % WAITING].color);
         }
     }
 
@@ -235,22 +322,13 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     fn look<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, slot: usize, k: usize) {
         let vector = self.queue.waiting[k];
         let lane = vector.place.lane;
-        let at = self.at_vector(simd, &vector);
-        let color = self.base_color(simd, lane, &at);
-        let [u, v] =
-            [&self.batch.varyings[slot % MAX_VARYINGS], &self.batch.varyings[(slot + 1) % MAX_VARYINGS]];
-        let uv = [varying(simd, u, lane, &at), varying(simd, v, lane, &at)];
+        let (uv, at) = self.coordinates(simd, &vector, slot);
+        self.keep_color(simd, &at, lane, k);
         let lookup = &mut self.queue.lookups[k];
-        if has_levels(unit) {
-            footprint(simd, unit.texture, self.batch, lane, slot, &at, uv).store_array(&mut lookup.level);
-        }
-        let farthest = f32x16::splat(simd, FARTHEST_TAME);
-        lookup.tame = (uv[0].abs().simd_le(farthest) & uv[1].abs().simd_le(farthest)).all_true();
+        footprint(simd, unit.texture, self.batch, lane, slot, &at, uv).store_array(&mut lookup.footprint);
+        lookup.tame = are_tame(simd, uv);
         uv[0].store_array(&mut lookup.uv[0]);
         uv[1].store_array(&mut lookup.uv[1]);
-        if !matches!(self.pass.color, ColorPath::Constant(_)) {
-            store4(color, &mut lookup.color);
-        }
     }
 
     /// A vector whose texture is read at once.
@@ -296,17 +374,15 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
         for k in 0..count {
             let job = &self.queue.staged[k];
-            let mut texel = job.taps[0].mixed(simd);
+            let (place, bits, lookup) = (job.place, job.bits, job.lookup);
+            let fine = job.taps[0].mean(simd);
             if job.two_levels {
-                let share = f32x16::load_array_ref(simd, &self.queue.lookups[job.lookup % WAITING].share);
-                texel = lerp(texel, job.taps[1].mixed(simd), share);
+                let share = i32x16::load_array_ref(simd, &self.queue.lookups[lookup % WAITING].share);
+                let mixed = OfLevels::new(simd, fine, job.taps[1].mean(simd), share.bitcast());
+                self.put(simd, place, bits, lookup, mixed);
+            } else {
+                self.put(simd, place, bits, lookup, fine);
             }
-            let color = match self.pass.color {
-                ColorPath::Constant(rgba) => splat4(simd, rgba),
-                _ => load4(simd, &self.queue.lookups[job.lookup % WAITING].color),
-            };
-            let mask = mask32x16::from_bitmask(simd, u64::from(job.bits));
-            self.write(simd, job.place, mask, times(color, texel));
         }
     }
 }
@@ -316,22 +392,19 @@ impl Lookup {
     #[inline(always)]
     fn find_levels<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, bits: u16) {
         let (sampler, texture) = (&unit.sampler, unit.texture);
-        let zero = f32x16::splat(simd, 0.0);
-        let (mut level, mut share) = (zero, zero);
-        if has_levels(unit) {
-            let lod = lod_of(simd, sampler, f32x16::load_array_ref(simd, &self.level));
-            let minified = lod.simd_gt(zero) & mask32x16::from_bitmask(simd, u64::from(bits));
-            let last = f32x16::splat(simd, (texture.levels.len() - 1) as f32);
-            let lod = minified.select(lod.min(last), zero);
-            if sampler.mip == Mip::Nearest {
-                level = (lod + f32x16::splat(simd, 0.5)).floor().min(last);
-            } else {
-                level = lod.floor();
-                share = lod - level;
-            }
+        let (zero, half) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 0.5));
+        let lod = lod_of(simd, sampler, f32x16::load_array_ref(simd, &self.footprint));
+        let minified = lod.simd_gt(zero) & mask32x16::from_bitmask(simd, u64::from(bits));
+        let last = f32x16::splat(simd, (texture.levels.len() - 1) as f32);
+        let lod = minified.select(lod.min(last), zero);
+        let (mut level, mut share) = (lod.floor(), zero);
+        if sampler.mip == Mip::Nearest {
+            level = (lod + half).floor().min(last);
+        } else {
+            share = (lod - level) * f32x16::splat(simd, 256.0) + half;
         }
-        level.store_array(&mut self.level);
-        share.store_array(&mut self.share);
+        level.to_int::<i32x16<S>>().store_array(&mut self.level);
+        share.to_int::<i32x16<S>>().store_array(&mut self.share);
     }
 }
 
@@ -340,8 +413,8 @@ impl Job {
     #[inline(always)]
     fn address<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, lookup: &Lookup) {
         let bits = mask32x16::from_bitmask(simd, u64::from(self.bits));
-        let share = f32x16::load_array_ref(simd, &lookup.share);
-        self.two_levels = (share.simd_gt(f32x16::splat(simd, 0.0)) & bits).any_true();
+        let share = i32x16::load_array_ref(simd, &lookup.share);
+        self.two_levels = (share.simd_gt(i32x16::splat(simd, 0)) & bits).any_true();
         let [u, v] = &lookup.uv;
         let uv = [f32x16::load_array_ref(simd, u), f32x16::load_array_ref(simd, v)];
         let [fine, coarse] = levels_from(unit.texture, self.level);
@@ -350,6 +423,17 @@ impl Job {
             self.taps[1].address(simd, unit, coarse, uv, lookup.tame);
         }
     }
+}
+
+/// `packed` with the bytes of channel `k` replaced by those of `texels` times `by`, unless that is 1.
+#[inline(always)]
+fn tinted<S: Simd>(simd: S, packed: u32x16<S>, k: usize, by: f32, texels: &impl ReadTexels<S>) -> u32x16<S> {
+    if by == 1.0 {
+        return packed;
+    }
+    let shift = 8 * k as u32;
+    let tinted = byte(simd, f32x16::splat(simd, by) * texels.number(simd, k)) << shift;
+    (packed & u32x16::splat(simd, !(255 << shift))) | tinted
 }
 
 /// Level `number` and the one after it.
@@ -400,21 +484,108 @@ impl TapLanes {
     #[inline(never)]
     fn fetch_apart(&mut self, texels: &[[u8; 4]]) {
         let word = |i: i32| u32::from_le_bytes(texels.get(i as u32 as usize).copied().unwrap_or_default());
-        for row in 0..2 {
-            for (lane, to) in self.texels[row].as_flattened_mut().iter_mut().enumerate() {
-                if self.apart >> lane & 1 == 1 {
-                    *to = [word(self.left[row][lane]), word(self.right[row][lane])];
-                }
+        let mut left = self.apart;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % LANES;
+            left &= left - 1;
+            for row in 0..2 {
+                let pair = [word(self.left[row][lane]), word(self.right[row][lane])];
+                self.texels[row].as_flattened_mut()[lane] = pair;
             }
         }
     }
 
     #[inline(always)]
-    fn mixed<S: Simd>(&self, simd: S) -> Rgba<S> {
+    fn mean<S: Simd>(&self, simd: S) -> OfLevel<S> {
         let [s, t] = &self.between;
         let between = [i32x16::load_array_ref(simd, s), i32x16::load_array_ref(simd, t)];
-        mixed(simd, quads(simd, &self.texels), between)
+        OfLevel(sums(simd, quads(simd, &self.texels), between))
     }
+}
+
+/// What was read of a texture: texels, or means of some.
+trait ReadTexels<S: Simd> {
+    /// Rounded to 8 bits a channel, to the bits of [`Self::number`] rounded; red in the low byte.
+    fn bytes(&self, simd: S) -> u32x16<S>;
+
+    /// A channel as numbers 0 to 1.
+    fn number(&self, simd: S, channel: usize) -> f32x16<S>;
+}
+
+/// Texels as they are.
+struct Single<S: Simd>(u32x16<S>);
+
+impl<S: Simd> ReadTexels<S> for Single<S> {
+    #[inline(always)]
+    fn bytes(&self, _: S) -> u32x16<S> {
+        self.0
+    }
+
+    #[inline(always)]
+    fn number(&self, simd: S, k: usize) -> f32x16<S> {
+        channel(simd, self.0 >> (8 * k as u32))
+    }
+}
+
+/// See [`sums`].
+#[derive(Clone, Copy)]
+struct OfLevel<S: Simd>([u32x16<S>; 2]);
+
+impl<S: Simd> ReadTexels<S> for OfLevel<S> {
+    #[inline(always)]
+    fn bytes(&self, simd: S) -> u32x16<S> {
+        let round = u32x16::splat(simd, 0x0080_0080);
+        (((self.0[0] + round) >> 8) & u32x16::splat(simd, 0x00ff_00ff))
+            | ((self.0[1] + round) & u32x16::splat(simd, 0xff00_ff00))
+    }
+
+    #[inline(always)]
+    fn number(&self, simd: S, k: usize) -> f32x16<S> {
+        low(simd, self.0[k % 2] >> (k as u32 / 2 * 16))
+    }
+}
+
+/// 2^16 times the mean of two levels, by channel.
+struct OfLevels<S: Simd>([u32x16<S>; 4]);
+
+impl<S: Simd> OfLevels<S> {
+    /// From two levels and the share of the coarser one in 1/256.
+    #[inline(always)]
+    fn new(simd: S, OfLevel(fine): OfLevel<S>, OfLevel(coarse): OfLevel<S>, share: u32x16<S>) -> Self {
+        let rest = u32x16::splat(simd, 256) - share;
+        let half = u32x16::splat(simd, 0xffff);
+        Self([
+            (fine[0] & half) * rest + (coarse[0] & half) * share,
+            (fine[1] & half) * rest + (coarse[1] & half) * share,
+            (fine[0] >> 16) * rest + (coarse[0] >> 16) * share,
+            (fine[1] >> 16) * rest + (coarse[1] >> 16) * share,
+        ])
+    }
+}
+
+impl<S: Simd> ReadTexels<S> for OfLevels<S> {
+    #[inline(always)]
+    fn bytes(&self, simd: S) -> u32x16<S> {
+        let [r, g, b, a] = self.0;
+        let round = u32x16::splat(simd, 1 << 15);
+        ((r + round) >> 16)
+            | (((g + round) >> 8) & u32x16::splat(simd, 0xff00))
+            | ((b + round) & u32x16::splat(simd, 0x00ff_0000))
+            | (((a + round) << 8) & u32x16::splat(simd, 0xff00_0000))
+    }
+
+    #[inline(always)]
+    fn number(&self, simd: S, k: usize) -> f32x16<S> {
+        let whole: i32x16<S> = self.0[k].bitcast();
+        whole.to_float::<f32x16<S>>() * f32x16::splat(simd, 1.0 / (255.0 * 65536.0))
+    }
+}
+
+/// Whether all coordinates are within [`FARTHEST_TAME`] of 0.
+#[inline(always)]
+fn are_tame<S: Simd>(simd: S, [u, v]: [f32x16<S>; 2]) -> bool {
+    let farthest = f32x16::splat(simd, FARTHEST_TAME);
+    (u.abs().simd_le(farthest) & v.abs().simd_le(farthest)).all_true()
 }
 
 #[inline(always)]

@@ -373,6 +373,7 @@ fn pass<'a>(
             && target.ids.is_none(),
         color,
         texture,
+        texture_only: texture.is_some() && !reads_depth && stencil.is_none() && target.ids.is_none(),
         texels: texels.into_iter().flatten().collect(),
         slots,
     }
