@@ -32,11 +32,22 @@ pub(crate) fn pack<S: Simd>(simd: S, rgba: Rgba<S>) -> u32x16<S> {
     byte(simd, r) | (byte(simd, g) << 8) | (byte(simd, b) << 16) | (byte(simd, a) << 24)
 }
 
+/// [`pack`] of numbers that clamping would not change, or by less than rounding does.
+#[inline(always)]
+pub(crate) fn pack_tame<S: Simd>(simd: S, [r, g, b, a]: Rgba<S>) -> u32x16<S> {
+    rounded(simd, r) | (rounded(simd, g) << 8) | (rounded(simd, b) << 16) | (rounded(simd, a) << 24)
+}
+
 /// One channel of [`pack`], in the low byte.
 #[inline(always)]
 pub(crate) fn byte<S: Simd>(simd: S, v: f32x16<S>) -> u32x16<S> {
     let clamped = v.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
-    let int: i32x16<S> = (clamped * f32x16::splat(simd, 255.0) + f32x16::splat(simd, 0.5)).to_int();
+    rounded(simd, clamped)
+}
+
+#[inline(always)]
+fn rounded<S: Simd>(simd: S, v: f32x16<S>) -> u32x16<S> {
+    let int: i32x16<S> = (v * f32x16::splat(simd, 255.0) + f32x16::splat(simd, 0.5)).to_int();
     int.bitcast::<u32x16<S>>()
 }
 

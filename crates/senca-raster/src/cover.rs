@@ -51,6 +51,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) color: ColorPath,
     /// The texture the colour is multiplied by, and the slot of u.
     pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
+    /// Fragments are given a colour, and nothing else is done; see [`crate::filled`].
+    pub(crate) color_only: bool,
     /// Fragments are given a textured colour, and nothing else is done.
     pub(crate) texture_only: bool,
     /// Texels of its levels, if they have 8 bits.
@@ -306,6 +308,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let mut active = active;
         if self.pass.texture_only {
             self.wait_blocks(simd, lane, by, active & full);
+            active &= !full;
+        }
+        if self.pass.color_only && active & full != 0 && self.color_blocks(simd, lane, by, active & full) {
             active &= !full;
         }
         for pair in top..=bottom {

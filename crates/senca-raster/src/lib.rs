@@ -51,6 +51,7 @@ mod block_depths;
 pub mod clip;
 mod cover;
 mod depth;
+mod filled;
 mod lines;
 mod multisample;
 mod pixel;

@@ -8,6 +8,7 @@ use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::block_depths::BlockDepths;
 use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
+use crate::filled::is_color_only;
 use crate::pixel::{clear_bounds, clear_in_scissor};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{StageNeeds, stage_of};
@@ -338,7 +339,7 @@ fn pass<'a>(
         _ => None,
     };
     let texels = texture.map(|(unit, _)| unit.texture.levels.iter().filter_map(|l| l.texels.rgba8()));
-    Pass {
+    let mut pass = Pass {
         map,
         state,
         setup: SetupState::new(state),
@@ -376,7 +377,10 @@ fn pass<'a>(
         texture_only: texture.is_some() && !reads_depth && stencil.is_none() && target.ids.is_none(),
         texels: texels.into_iter().flatten().collect(),
         slots,
-    }
+        color_only: false,
+    };
+    pass.color_only = is_color_only(&pass);
+    pass
 }
 
 /// A draw that tiles are drawn from.

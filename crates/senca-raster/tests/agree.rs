@@ -293,6 +293,67 @@ fn eight_bit_targets_agree() {
 }
 
 #[test]
+fn whole_blocks_of_colour_agree() {
+    // Colours beyond 0 to 1, too, where clamping counts.
+    let mut mesh = Mesh::random(12, 60);
+    mesh.varyings.iter_mut().for_each(|v| *v = *v * 1.4 - 0.2);
+    let shadings = [
+        ColorSource::Rgba { first: 0 },
+        ColorSource::Rgb { first: 1 },
+        ColorSource::Constant([0.9, 1.3, -0.2, 0.4]),
+    ];
+    for color in shadings {
+        let shading = Shading::Fixed { color, texture: None };
+        for blend in [None, Some(Blend::OVER), Some(Blend::ADD)] {
+            let state = State {
+                blend,
+                interpolation: Interpolation::Screen,
+                clear: Some(Clear { color: Some([0.2, 0.4, 0.6, 0.8]), ..Clear::default() }),
+                ..State::default()
+            };
+            let picture = |rasterizer: &mut dyn Rasterizer| {
+                let mut color = vec![[0u8; 4]; 197 * 130];
+                let mut target =
+                    Target::new(197, 130).and_then(|t| t.with_color(ColorPlane::Rgba8(&mut color))).unwrap();
+                let counters = rasterizer.draw(&mut target, &mesh.primitives(), &state, &shading);
+                (color, counters.passed)
+            };
+            let plain = picture(&mut ScanlineRasterizer);
+            for level in levels() {
+                assert!(plain == picture(&mut tiled(1, level)), "{color:?} {blend:?} {level:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn textured_bytes_are_rounded_numbers() {
+    let texel =
+        |i: u32| [(i * 37 % 251) as u8, (i * 91 % 256) as u8, (i % 16 * 16) as u8, 128 + (i % 128) as u8];
+    let texture = Texture::new(48, 20, Texels::Rgba8((0..48 * 20).map(texel).collect())).unwrap();
+    let texture = texture.with_mipmaps();
+    let mesh = Mesh::random(7, 400);
+    let state = State { depth_test: Compare::Always, depth_write: false, ..State::default() };
+    for sampler in [Sampler::NEAREST, Sampler::BILINEAR, Sampler::TRILINEAR] {
+        let unit = TextureUnit { texture: &texture, sampler, coords: 2 };
+        for color in [[1.0; 4], [1.0, 0.7, 1.0, 0.3]] {
+            let shading = Shading::Fixed { color: ColorSource::Constant(color), texture: Some(unit) };
+            let mut numbers = vec![[0f32; 4]; 150 * 90];
+            let mut bytes = vec![[0u8; 4]; 150 * 90];
+            for plane in [ColorPlane::Rgba32F(&mut numbers), ColorPlane::Rgba8(&mut bytes)] {
+                let mut target = Target::new(150, 90).and_then(|t| t.with_color(plane)).unwrap();
+                TiledRasterizer::default().draw(&mut target, &mesh.primitives(), &state, &shading);
+            }
+            let apart = numbers.iter().zip(&bytes).flat_map(|(numbers, bytes)| {
+                let rounded = senca_raster::rgba8_from_rgba(*numbers);
+                (0..4).map(move |k| rounded[k].abs_diff(bytes[k]))
+            });
+            assert_eq!(apart.max(), Some(0), "{sampler:?} {color:?}");
+        }
+    }
+}
+
+#[test]
 fn hostile_triangles_do_no_harm() {
     let odd = [
         0.0,
