@@ -28,12 +28,16 @@ pub(crate) enum Texels {
 
 /// `count` copies of `value`, `None` if memory does not suffice.
 ///
-/// The try is given back at once: a vector of zeros made afterwards takes untouched pages of the system. It is for
-/// more than allocators keep, which would else give the same memory again, to be set to zeros.
+/// The try is given back at once: a vector of zeros made afterwards takes untouched pages of the system. If it is
+/// large, the try is for more than allocators keep, which would else give the same memory again, to be set to zeros.
 pub(crate) fn filled<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
-    const MUCH: usize = (1 << 26) + 1;
-    Vec::<T>::new().try_reserve_exact(count.max(MUCH.div_ceil(size_of::<T>().max(1)))).ok()?;
-    Some(vec![value; count])
+    const LARGE: usize = 1 << 20;
+    const MORE_THAN_KEPT: usize = (1 << 26) + 1;
+    let size = size_of::<T>().max(1);
+    let there_is = |count| Vec::<T>::new().try_reserve_exact(count).is_ok();
+    let is_large = count >= LARGE / size;
+    let fits = is_large && there_is(count.max(MORE_THAN_KEPT.div_ceil(size))) || there_is(count);
+    fits.then(|| vec![value; count])
 }
 
 impl Texels {
