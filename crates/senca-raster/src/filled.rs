@@ -62,7 +62,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         self.counts.tested += count;
         self.counts.passed += count;
         self.counts.shaded += count;
-        self.buffer.written |= u64::from(blocks) << (8 * by as u32 & 63);
+        self.buffer.written |= u64::from(blocks) << ((8 * by) as u32 & 63);
         true
     }
 
