@@ -299,12 +299,15 @@ impl Batch {
             x1: pixels.x1 - tile[0],
             y1: pixels.y1 - tile[1],
         };
-        let setup = Setup::new(corners, double_area(&corners), &pass.setup);
-        let edges = if local.is_empty() { None } else { TileEdges::new(&setup.v, first, &local) };
+        // Many do not meet the tile: only their box does.
+        let area = double_area(&corners);
+        let v = if area < 0 { [corners[0], corners[2], corners[1]] } else { corners };
+        let edges = if local.is_empty() { None } else { TileEdges::new(&v, first, &local) };
         let Some(edges) = edges else {
             (0..4).for_each(|k| self.area[k][lane] = 0);
             return;
         };
+        let setup = Setup::new(corners, area, &pass.setup);
         for (k, v) in [local.x0, local.y0, local.x1, local.y1].into_iter().enumerate() {
             self.area[k][lane] = v;
         }
