@@ -217,7 +217,7 @@ impl Run {
             sum += *start;
             *start = sum;
         }
-        self.references.clear();
+        // What is there is overwritten.
         self.references.resize(sum as usize, Reference::default());
         // Backwards, so that each group's start ends where it belongs.
         for &(reference, [x0, y0, x1, y1]) in self.boxes.iter().rev() {
