@@ -46,14 +46,17 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let b = &*self.batch;
         let [left, above] = [b.offset[0][lane], b.offset[1][lane] + 8 * by];
         let mut rows = [f32x16::splat(simd, 0.0); PAIRS];
-        for (pair, row) in rows.iter_mut().enumerate() {
-            let y = (above + 2 * pair as i32) as f32;
+        for pair in top..=bottom {
+            let y = (above + 2 * pair) as f32;
             let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, y);
-            *row = row_of(simd, &b.depth, lane, fy);
+            rows[pair as usize % PAIRS] = row_of(simd, &b.depth, lane, fy);
         }
         let (nearest, farthest) = (f32x16::splat(simd, b.z_min[lane]), f32x16::splat(simd, b.z_max[lane]));
         let (mut tested, mut passed) = (0, 0);
-        for bx in (0..8).filter(|bx| active >> bx & 1 == 1) {
+        let mut remaining = active;
+        while remaining != 0 {
+            let bx = remaining.trailing_zeros() as i32;
+            remaining &= remaining - 1;
             let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (left + 8 * bx) as f32);
             let block = (8 * by + bx) as usize & 63;
             let is_full = full >> bx & 1 == 1;
