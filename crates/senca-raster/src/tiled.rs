@@ -558,8 +558,8 @@ impl Part<'_> {
 
     /// Fills the batch; whether there was anything to fill it with.
     ///
-    /// Corners of a tile's triangles are all over the memory: first the places of all, then their varyings, each
-    /// in a loop so short that the processor waits for several at once.
+    /// Corners of a tile's triangles are all over the memory: all are touched first, in a loop so short that the
+    /// processor waits for all at once; then come the places, and then the varyings.
     #[inline(always)]
     fn fill<'r>(
         &self,
@@ -567,9 +567,13 @@ impl Part<'_> {
         references: &mut impl Iterator<Item = (&'r Run, &'r Reference)>,
     ) -> bool {
         let mut whole = [[u32::MAX; 3]; LANES];
-        while batch.len < LANES
-            && let Some((run, reference)) = references.next()
-        {
+        let (mut next, mut touched) = ([None; LANES], 0);
+        for (next, (run, reference)) in next.iter_mut().skip(batch.len).zip(references) {
+            touched ^= self.touch(reference);
+            *next = Some((run, reference));
+        }
+        std::hint::black_box(touched);
+        for (run, reference) in next.into_iter().flatten() {
             match reference.piece() {
                 None => whole[self.fetch(batch, reference) % LANES] = reference.corners,
                 Some(k) => self.fetch_piece(batch, run, k),
@@ -583,6 +587,16 @@ impl Part<'_> {
             }
         }
         batch.len > 0
+    }
+
+    /// Reads something of each corner, so that the rest is there when it is needed. What it returns means nothing.
+    #[inline(always)]
+    fn touch(&self, reference: &Reference) -> u32 {
+        let p = self.input.primitives;
+        let varying = |i: u32| p.varyings.get(i as usize * p.stride).map_or(0, |v| v.to_bits());
+        let [a, b, c] = reference.corners;
+        let place = |i: u32| self.input.vertex(i).map_or(0, |v| v.x) as u32;
+        place(a) ^ place(b) ^ place(c) ^ varying(a) ^ varying(b) ^ varying(c)
     }
 
     /// Puts a triangle into the batch but for its varyings; returns its lane.
