@@ -5,6 +5,7 @@ use crate::list::{Attribute, Step};
 use crate::state::TEXTURE_UNITS;
 use crate::vertex::{Attr, Plan, Processed, VertexInput};
 use crate::{Context, Enum, gl};
+use senca_math::glam::Vec4;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -216,13 +217,22 @@ impl Context {
     #[inline]
     pub fn vertex<T: Component, const N: usize>(&mut self, v: [T; N]) {
         const { assert!(N >= 2, "a vertex has two to four coordinates") }
-        self.attribute(Attribute::Vertex(coordinates(v)));
+        let v = coordinates(v);
+        if self.compiling.is_some() {
+            return self.attribute(Attribute::Vertex(v));
+        }
+        let [x, y, z, w] = v;
+        self.push_vertex(x, y, z, w);
     }
 
     /// `glColor`, with 3 or 4 components; without alpha it is 1.
     #[inline]
     pub fn color<T: Component, const N: usize>(&mut self, v: [T; N]) {
-        self.attribute(Attribute::Color(component::color(v)));
+        let v = component::color(v);
+        if self.compiling.is_some() {
+            return self.attribute(Attribute::Color(v));
+        }
+        self.set_color(v);
     }
 
     /// `glSecondaryColor`.
@@ -299,8 +309,8 @@ impl Context {
     pub(crate) fn do_attribute(&mut self, a: Attribute) {
         let current = &mut self.state.current;
         match a {
-            Attribute::Vertex(v) => self.push_vertex(v),
-            Attribute::Color(v) => current.color = v,
+            Attribute::Vertex([x, y, z, w]) => self.push_vertex(x, y, z, w),
+            Attribute::Color(v) => self.set_color(v),
             Attribute::Secondary([r, g, b]) => current.secondary = [r, g, b, 1.0],
             Attribute::Normal(v) => current.normal = v,
             Attribute::TexCoord(unit, v) => current.tex_coords[usize::from(unit)] = v,
@@ -310,14 +320,20 @@ impl Context {
         }
     }
 
+    /// Stored as one vector: the next vertex reads it as one, and would wait for four numbers to be written.
     #[inline]
-    fn push_vertex(&mut self, position: [f32; 4]) {
+    fn set_color(&mut self, [r, g, b, a]: [f32; 4]) {
+        Vec4::new(r, g, b, a).write_to_slice(&mut self.state.current.color);
+    }
+
+    /// The coordinates come one by one, so that they stay in registers.
+    fn push_vertex(&mut self, x: f32, y: f32, z: f32, w: f32) {
         let Immediate { mode: Some(mode), input, plan, .. } = &mut self.immediate else {
             // A vertex outside of begin and end means nothing.
             return;
         };
         let (current, mode) = (&self.state.current, *mode);
-        input.positions.push(position);
+        input.positions.push([x, y, z, w]);
         if plan.needs_colors() {
             input.colors.push(current.color);
         }
