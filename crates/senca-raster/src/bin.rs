@@ -4,7 +4,7 @@
 //! of references ordered by tile. Drawing a tile goes through the runs in order, so the order of
 //! submission survives whatever the number of threads.
 
-use crate::api::{Counters, Interpolation, MAX_VARYINGS, Primitives};
+use crate::api::{Counters, Interpolation, LANES, MAX_VARYINGS, Primitives};
 use crate::assemble::{Assembled, assemble, clipped_varyings, varyings_of};
 use crate::setup::{Bounds, HALF, SUB_BITS, ScreenMap, ScreenVertex, double_area, is_culled};
 
@@ -140,8 +140,12 @@ impl Run {
         self.counters = Counters::default();
         self.starts.clear();
         self.starts.resize(input.tiles[0] * input.tiles[1] + 1, 0);
-        for n in range {
-            self.add(input, n);
+        for first in range.clone().step_by(LANES) {
+            let some = first..(first + LANES).min(range.end);
+            touch(input, some.clone());
+            for n in some {
+                self.add(input, n);
+            }
         }
         self.group(input.tiles[0]);
     }
@@ -233,6 +237,15 @@ impl Run {
         self.starts.remove(0);
         self.starts.push(sum);
     }
+}
+
+/// Reads something of each corner of some triangles, in a loop so short that the processor waits for all at once
+/// where vertices lie all over the memory.
+#[inline(always)]
+fn touch(input: &BinInput<'_>, triangles: std::ops::Range<usize>) {
+    let corners = input.primitives.indices.get(3 * triangles.start..3 * triangles.end).unwrap_or_default();
+    let x = |i: &u32| input.vertex(*i).map_or(0, |v| v.x);
+    std::hint::black_box(corners.iter().map(x).fold(0, |a, b| a ^ b));
 }
 
 /// Pixels whose centres lie in the bounding box of the corners and may be written.
