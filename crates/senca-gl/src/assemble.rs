@@ -166,7 +166,7 @@ impl Order<'_> {
 impl Context {
     /// Turns the processed vertices into primitives; with `last`, they are all.
     pub(crate) fn assemble(&mut self, mode: Enum, last: bool) {
-        let processed = std::mem::take(&mut self.immediate.processed);
+        let mut processed = std::mem::take(&mut self.immediate.processed);
         let plan = std::mem::take(&mut self.immediate.plan);
         let elements = self.immediate.elements.take();
         let order = Order {
@@ -176,6 +176,7 @@ impl Context {
         match mode {
             gl::POINTS => self.points(&plan, &processed, order),
             gl::LINES | gl::LINE_LOOP | gl::LINE_STRIP => self.lines(mode, &plan, &processed, order, last),
+            _ if plan.simple => self.simple_polygons(mode, &plan, &mut processed, order, last),
             _ => self.polygons(mode, &plan, &processed, order),
         }
         self.immediate.plan = plan;
@@ -245,19 +246,6 @@ impl Context {
         if self.is_culled(true) && self.is_culled(false) {
             return;
         }
-        if plan.simple {
-            let base = self.begin_batch(Kind::Triangles, plan.layout);
-            self.batch.extend(p);
-            let first = self.batch.indices.len();
-            match order.elements {
-                None => number_triangles(mode, order.count, base, &mut self.batch.indices),
-                Some(elements) => {
-                    number_triangles(mode, order.count, 0, &mut self.batch.indices);
-                    self.batch.indices[first..].iter_mut().for_each(|i| *i = base + elements[*i as usize]);
-                }
-            }
-            return;
-        }
         if plan.simple_flat {
             return self.flat_polygons(mode, plan, p, order);
         }
@@ -282,6 +270,31 @@ impl Context {
                 self.polygon(corners, plan);
             }
         });
+    }
+
+    /// Polygons that need no look of their own. Takes the vertices away if they are the last.
+    fn simple_polygons(&mut self, mode: Enum, plan: &Plan, p: &mut Processed, order: Order<'_>, last: bool) {
+        if self.is_culled(true) && self.is_culled(false) {
+            return;
+        }
+        let base = self.begin_batch(Kind::Triangles, plan.layout);
+        if last {
+            self.batch.take(p);
+        } else {
+            self.batch.extend(p);
+        }
+        let first = self.batch.indices.len();
+        match order.elements {
+            None => number_triangles(mode, order.count, base, &mut self.batch.indices),
+            Some(elements) if mode == gl::TRIANGLES => {
+                let whole = &elements[..order.count / 3 * 3];
+                self.batch.indices.extend(whole.iter().map(|i| base + i));
+            }
+            Some(elements) => {
+                number_triangles(mode, order.count, 0, &mut self.batch.indices);
+                self.batch.indices[first..].iter_mut().for_each(|i| *i = base + elements[*i as usize]);
+            }
+        }
     }
 
     /// Polygons of one colour each that need nothing else.

@@ -170,6 +170,16 @@ impl Batch {
         self.sizes.extend_from_slice(&p.sizes);
     }
 
+    /// Does what [`Self::extend`] does, but leaves the vertices behind only if it must copy them.
+    pub(crate) fn take(&mut self, p: &mut Processed) {
+        if !self.positions.is_empty() {
+            return self.extend(p);
+        }
+        std::mem::swap(&mut self.positions, &mut p.positions);
+        std::mem::swap(&mut self.varyings, &mut p.varyings);
+        std::mem::swap(&mut self.sizes, &mut p.sizes);
+    }
+
     /// Whether the next batch can be drawn together with this one.
     fn goes_along(&self, next: &Self) -> bool {
         let of_triangles =
