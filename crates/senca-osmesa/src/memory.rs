@@ -306,4 +306,18 @@ mod tests {
             zeros.fill(7);
         }
     }
+
+    #[test]
+    fn threads_do_not_get_the_same_block() {
+        let work = |mark: u8| {
+            for round in 0..40 {
+                let mut bytes = vec![mark; LARGE + 70_000 * (round % 5)];
+                bytes.resize(3 * LARGE + 10_000 * round, mark);
+                let half = bytes.split_off(LARGE + 1);
+                bytes.shrink_to_fit();
+                assert!(bytes.iter().chain(&half).all(|byte| *byte == mark));
+            }
+        };
+        std::thread::scope(|scope| (1..=4).for_each(|mark| drop(scope.spawn(move || work(mark)))));
+    }
 }
