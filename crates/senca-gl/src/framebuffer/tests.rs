@@ -678,3 +678,51 @@ fn the_border_of_a_texture_is_drawn_to() {
     c.get_tex_image(gl::TEXTURE_2D, 0, gl::RGBA, gl::UNSIGNED_BYTE, &mut out);
     assert!(out.chunks_exact(4).all(|texel| texel == [255, 0, 0, 255]), "{out:?}");
 }
+
+/// OpenGL 1.5, section 3.8.8: the level of detail goes by pixels, however many samples they have.
+#[test]
+fn samples_read_the_level_of_their_pixel() {
+    let red = |level: u8| [40 * level + 40, 0, 0, 255];
+    for samples in [0, 4] {
+        let mut c = context(16, 16);
+        object(&mut c, [16, 16], samples);
+        c.viewport(0, 0, 16, 16);
+        for level in 0..6u8 {
+            let side = 32 >> level;
+            let texels = red(level).repeat((side * side) as usize);
+            let (level, format) = (i32::from(level), gl::RGBA);
+            let size = [side, side];
+            c.tex_image_2d(
+                gl::TEXTURE_2D,
+                level,
+                format as i32,
+                size,
+                0,
+                format,
+                gl::UNSIGNED_BYTE,
+                Some(&texels),
+            );
+        }
+        for (name, value) in
+            [(gl::TEXTURE_MIN_FILTER, gl::NEAREST_MIPMAP_NEAREST), (gl::TEXTURE_MAG_FILTER, gl::NEAREST)]
+        {
+            c.tex_parameter(gl::TEXTURE_2D, name, &[f64::from(value)]);
+        }
+        c.enable(gl::TEXTURE_2D);
+        for (repeats, level) in [(0.5, 0), (1.0, 1), (2.0, 2), (4.0, 3)] {
+            c.begin(gl::QUADS);
+            for [x, y] in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0f32]] {
+                c.tex_coord([x * repeats, y * repeats]);
+                c.vertex([2.0 * x - 1.0, 2.0 * y - 1.0]);
+            }
+            c.end();
+            let name = c.framebuffers.draw;
+            c.bind_framebuffer(gl::DRAW_FRAMEBUFFER, 0);
+            c.blit_framebuffer([0, 0, 16, 16], [0, 0, 16, 16], gl::COLOR_BUFFER_BIT, gl::NEAREST);
+            c.bind_framebuffer(gl::READ_FRAMEBUFFER, 0);
+            let colors = rgba(&mut c, [0, 0], [16, 16]);
+            assert!(colors.iter().all(|color| *color == red(level)), "{samples} samples, level {level}");
+            c.bind_framebuffer(gl::FRAMEBUFFER, name);
+        }
+    }
+}

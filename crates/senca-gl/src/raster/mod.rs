@@ -240,7 +240,8 @@ impl<'a> Ready<'a> {
         };
         let lifted = lifted(batch, state.depth_bias.constant);
         let sized = with_sizes(batch, usize::from(batch.layout.stride));
-        let work = match simple_shading(s, batch.kind, target, simple_texture(batch), constant_color(batch)) {
+        let texture = simple_texture(batch).map(|texture| texture.of_samples(side));
+        let work = match simple_shading(s, batch.kind, target, texture, constant_color(batch)) {
             Some(simple) => {
                 (state.blend, state.stencil) = (simple.blend, simple.stencil);
                 Work::Simple(simple)

@@ -68,6 +68,15 @@ pub(super) fn simple_texture(batch: &Batch) -> Option<SimpleTexture> {
     Some(SimpleTexture { texture, sampler, coords, replaces })
 }
 
+impl SimpleTexture {
+    /// The same for a target whose pixels are samples, `side` along each side of a pixel: the level of detail is that
+    /// of the whole pixel (OpenGL 1.5, section 3.8.8).
+    pub(super) fn of_samples(mut self, side: u32) -> Self {
+        self.sampler.lod_bias += side.ilog2() as f32;
+        self
+    }
+}
+
 /// The parameters of a texture in the rasterizer's terms, if it has them.
 fn sampler(p: &TexParams, env_lod_bias: f32, levels: usize) -> Option<Sampler> {
     let (minify, mip) = match p.min_filter {
