@@ -123,7 +123,12 @@ fn bin_only(bencher: Bencher<'_, '_>, cells: u32) {
 fn trilinear_of(bencher: Bencher<'_, '_>, cells: u32, rasterizer: &mut dyn Rasterizer, texels: Texels) {
     let texture = Texture::new(256, 256, texels).expect("sides and count fit").with_mipmaps();
     let unit = TextureUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 3 };
-    let shading = Shading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: Some(unit) };
+    let shading = Shading::Fixed {
+        color: ColorSource::Rgb { first: 0 },
+        texture: Some(unit),
+        shadow: None,
+        alpha_test: None,
+    };
     Sheet::new(cells).bench(bencher, rasterizer, &shading, State::default());
 }
 

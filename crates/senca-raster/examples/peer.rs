@@ -304,10 +304,26 @@ impl Workload for Quads {
             self.textured_layers(frame);
             let (texture, sampler) = self.texture.as_ref().expect("checked above");
             let unit = TextureUnit { texture, sampler: *sampler, coords: 0 };
-            (2, Shading::Fixed { color: ColorSource::Constant([1.0, 1.0, 0.7, 1.0]), texture: Some(unit) })
+            (
+                2,
+                Shading::Fixed {
+                    color: ColorSource::Constant([1.0, 1.0, 0.7, 1.0]),
+                    texture: Some(unit),
+                    shadow: None,
+                    alpha_test: None,
+                },
+            )
         } else {
             self.colored_layers(frame);
-            (4, Shading::Fixed { color: ColorSource::Rgba { first: 0 }, texture: None })
+            (
+                4,
+                Shading::Fixed {
+                    color: ColorSource::Rgba { first: 0 },
+                    texture: None,
+                    shadow: None,
+                    alpha_test: None,
+                },
+            )
         };
         let primitives = Primitives {
             positions: &self.positions,

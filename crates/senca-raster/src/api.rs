@@ -1,5 +1,6 @@
 //! What goes into a rasterizer and what comes out: primitives, state, shading, counters.
 
+use crate::shadow::ShadowUnit;
 use crate::stage::FragmentStage;
 use crate::target::{Clear, Target};
 use crate::texture::{Sampler, Texture};
@@ -96,10 +97,11 @@ pub struct State {
     pub strokes: StrokeRule,
     /// Pattern lines are broken up by. Default: none.
     pub stipple: Option<LineStipple>,
-    /// Whether squares of 2 x 2 pixels of the target are the samples of one pixel: a [`Shading::Stage`]
-    /// then colours once per such pixel and merges sample by sample. Viewport, scissor and sizes are
-    /// those of the target all the same. The target's sides must be even. Other shadings colour
-    /// every sample. Default: no.
+    /// Whether squares of 2 x 2 pixels of the target are the samples of one pixel: a [`Shading::Stage`],
+    /// and a [`Shading::Fixed`] with a texture, a shadow map or an alpha test on triangles, then colour once
+    /// per such pixel, at its centre, and merge sample by sample. Viewport, scissor and sizes are those of the
+    /// target all the same, and so are footprints in textures. The target's sides must be even. Other
+    /// shadings colour every sample. Default: no.
     pub multisample: bool,
     /// Whether alpha is multiplied by the share of the pixel that a primitive covers, and all pixels it
     /// touches are drawn: lines as rectangles, points as discs, of any size. Stages find the share in
@@ -389,12 +391,17 @@ pub enum Factor {
 pub enum Shading<'a> {
     /// Nowhere: depth and identifiers only; a colour target keeps what it has.
     None,
-    /// A colour, optionally times a texture. Stays in vector registers from end to end.
+    /// A colour, optionally times the light that a shadow map lets through and times a texture. Stays in vector
+    /// registers from end to end.
     Fixed {
         /// The colour.
         color: ColorSource,
         /// The texture it is multiplied by.
         texture: Option<TextureUnit<'a>>,
+        /// The shadow map whose light it is seen in.
+        shadow: Option<ShadowUnit<'a>>,
+        /// The test that decides by alpha what is drawn at all.
+        alpha_test: Option<AlphaTest>,
     },
     /// Code of the caller's, once per batch of up to [`LANES`] fragments.
     Custom(&'a dyn FragmentShader),
@@ -407,13 +414,32 @@ impl Shading<'_> {
     /// One colour, opaque or not.
     #[must_use]
     pub const fn constant(rgba: [f32; 4]) -> Self {
-        Self::Fixed { color: ColorSource::Constant(rgba), texture: None }
+        Self::Fixed { color: ColorSource::Constant(rgba), texture: None, shadow: None, alpha_test: None }
+    }
+
+    /// The alpha test.
+    pub(crate) fn alpha_test(&self) -> Option<AlphaTest> {
+        match self {
+            Self::Fixed { alpha_test, .. } => *alpha_test,
+            _ => None,
+        }
+    }
+
+    /// Whether pixels of several samples are coloured once; see [`State::multisample`].
+    pub(crate) fn colors_pixels(&self) -> bool {
+        match self {
+            Self::Fixed { texture, shadow, alpha_test, .. } => {
+                texture.is_some() || shadow.is_some() || alpha_test.is_some()
+            }
+            Self::Stage(_) => true,
+            Self::None | Self::Custom(_) => false,
+        }
     }
 
     /// Colour from varyings 0, 1, 2; alpha 1.
     #[must_use]
     pub const fn vertex_rgb() -> Self {
-        Self::Fixed { color: ColorSource::Rgb { first: 0 }, texture: None }
+        Self::Fixed { color: ColorSource::Rgb { first: 0 }, texture: None, shadow: None, alpha_test: None }
     }
 }
 
@@ -432,6 +458,23 @@ pub enum ColorSource {
         /// Number of the varying that is red.
         first: usize,
     },
+}
+
+/// A test of alpha, held to [0, 1]. What fails it changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlphaTest {
+    /// How alpha must compare to the reference.
+    pub compare: Compare,
+    /// What it is compared to.
+    pub reference: f32,
+}
+
+impl AlphaTest {
+    /// Whether an alpha passes.
+    #[must_use]
+    pub fn passes(&self, alpha: f32) -> bool {
+        self.compare.passes(alpha.clamp(0.0, 1.0), self.reference)
+    }
 }
 
 /// A texture, how it is read, and where its coordinates are.

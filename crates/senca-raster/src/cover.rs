@@ -9,12 +9,13 @@
 //! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
 
 use crate::api::{
-    ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, StencilOp, StencilTest,
-    TextureUnit,
+    AlphaTest, ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, StencilOp,
+    StencilTest, TextureUnit,
 };
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
+use crate::shadow::ShadowUnit;
 use crate::stage::{FragmentStage, PixelColors, Pixels, StageNeeds};
 use crate::textured::{TextureQueue, Waiting};
 use crate::tile::{BLOCKS, Band, ColorFormat, TileBuffer, Touches};
@@ -51,10 +52,18 @@ pub(crate) struct Pass<'a> {
     pub(crate) color: ColorPath,
     /// The texture the colour is multiplied by, and the slot of u.
     pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
+    /// The shadow map whose light it is seen in, and the slot of s.
+    pub(crate) shadow: Option<(&'a ShadowUnit<'a>, usize)>,
+    /// The test of the colours' alpha.
+    pub(crate) alpha_test: Option<AlphaTest>,
+    /// There is one of them: colours come later; see [`crate::textured`].
+    pub(crate) waits: bool,
+    /// The same, and nothing else is done.
+    pub(crate) waits_only: bool,
+    /// The same, and pixels have several samples; see [`crate::pixels`].
+    pub(crate) per_pixel: bool,
     /// Fragments are given a colour, and nothing else is done; see [`crate::filled`].
     pub(crate) color_only: bool,
-    /// Fragments are given a textured colour, and nothing else is done.
-    pub(crate) texture_only: bool,
     /// Texels of its levels, if they have 8 bits.
     pub(crate) texels: Vec<&'a [[u8; 4]]>,
     /// Which varyings are interpolated.
@@ -78,7 +87,7 @@ impl ColorPath {
     pub(crate) fn of(shading: &Shading<'_>, format: ColorFormat) -> Self {
         match (shading, format) {
             (Shading::Custom(_) | Shading::Stage(_), _) => Self::Plain,
-            (Shading::None, _) | (_, ColorFormat::None) => Self::None,
+            (Shading::None, _) | (Shading::Fixed { alpha_test: None, .. }, ColorFormat::None) => Self::None,
             (Shading::Fixed { color, .. }, _) => match *color {
                 ColorSource::Constant(rgba) => Self::Constant(rgba),
                 ColorSource::Rgb { .. } => Self::Varying { alpha: false },
@@ -88,19 +97,27 @@ impl ColorPath {
     }
 }
 
-/// Varyings to interpolate, in the order of their slots: those of the colour, then u and v; all, in
-/// their own order, for the caller's code.
+/// Slots of the coordinates of a shadow map.
+pub(crate) const SHADOW_SLOTS: usize = 4;
+
+/// Varyings to interpolate, in the order of their slots: those of the colour, then u and v, then the coordinates of
+/// the shadow map; all, in their own order, for the caller's code.
 pub(crate) fn slots(shading: &Shading<'_>, path: ColorPath, stride: usize) -> Vec<usize> {
     match (shading, path) {
         (_, ColorPath::Plain) => (0..stride.min(MAX_VARYINGS)).collect(),
-        (Shading::Fixed { color, texture }, ColorPath::Constant(_) | ColorPath::Varying { .. }) => {
+        (
+            Shading::Fixed { color, texture, shadow, .. },
+            ColorPath::Constant(_) | ColorPath::Varying { .. },
+        ) => {
             let (first, count) = match *color {
                 ColorSource::Constant(_) => (0, 0),
                 ColorSource::Rgb { first } => (first, 3),
                 ColorSource::Rgba { first } => (first, 4),
             };
             let of_color = (0..count).map(|k| first.saturating_add(k));
-            of_color.chain(texture.iter().flat_map(|t| [t.coords, t.coords.saturating_add(1)])).collect()
+            let of_texture = texture.iter().flat_map(|t| [t.coords, t.coords.saturating_add(1)]);
+            let of_shadow = shadow.iter().flat_map(|s| (0..SHADOW_SLOTS).map(|k| s.coords.saturating_add(k)));
+            of_color.chain(of_texture).chain(of_shadow).collect()
         }
         _ => Vec::new(),
     }
@@ -186,9 +203,19 @@ pub(crate) struct TileDraw<'a, 'b, const FAST: bool> {
 /// What is the same for all vectors of one row of pixel pairs: the part of each plane that depends on
 /// y.
 #[derive(Clone, Copy)]
-struct Row<S: Simd> {
+pub(crate) struct Row<S: Simd> {
     fy: f32x16<S>,
     depth: f32x16<S>,
+}
+
+/// Two rows of 8 pixels some of which have passed the tests.
+pub(crate) struct Tested<S: Simd> {
+    fx: f32x16<S>,
+    pub(crate) z: f32x16<S>,
+    /// Those that have.
+    pub(crate) pass: mask32x16<S>,
+    /// The same.
+    pub(crate) bits: u16,
 }
 
 /// A plane's `c + dy * fy`; see [`Plane::at`].
@@ -305,8 +332,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         if !FAST && self.pass.depth_only {
             return self.depths(simd, lane, lanes, by, [top, bottom], [active, full]);
         }
+        if self.pass.per_pixel {
+            for bx in (0..8).filter(|bx| active >> bx & 1 == 1) {
+                self.block_of_pixels(simd, lane, lanes, [bx, by], [top, bottom], full >> bx & 1 == 1);
+            }
+            return;
+        }
         let mut active = active;
-        if self.pass.texture_only {
+        if self.pass.waits_only {
             self.wait_blocks(simd, lane, by, active & full);
             active &= !full;
         }
@@ -451,8 +484,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     ) {
         let b = &*self.batch;
         let y = 8 * by + 2 * pair;
-        let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, (b.offset[1][lane] + y) as f32);
-        let row = Row { fy, depth: row_of(simd, &b.depth, lane, fy) };
+        let row = self.row_at(simd, lane, y);
         let edges: [i32x16<S>; 3] = std::array::from_fn(|k| lanes[k] + edge_at(simd, b, k, lane, [0, y]));
         let steps: [i32; 3] = std::array::from_fn(|k| b.edge_dx[k][lane] << 3);
         let mut left = active;
@@ -472,6 +504,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
     }
 
+    /// The pair of rows that begins at row `y` of the tile.
+    #[inline(always)]
+    pub(crate) fn row_at<S: Simd>(&self, simd: S, lane: usize, y: i32) -> Row<S> {
+        let b = &*self.batch;
+        let fy = f32x16::load_array(simd, LANE_FY) + f32x16::splat(simd, (b.offset[1][lane] + y) as f32);
+        Row { fy, depth: row_of(simd, &b.depth, lane, fy) }
+    }
+
     /// Lanes that may be written, of the vector at pixel (`x`, `y`) of the tile.
     #[inline(always)]
     pub(crate) fn within_bounds<S: Simd>(&self, simd: S, x: i32, y: i32) -> mask32x16<S> {
@@ -487,13 +527,45 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     /// Tests and writes two rows of 8 pixels.
     #[inline(always)]
     fn vector<S: Simd>(&mut self, simd: S, place: Place, row: &Row<S>, inside: mask32x16<S>, bx: i32) {
+        let Some(Tested { fx, z, pass, bits }) = self.test(simd, place, row, inside, bx) else { return };
+        let keep = if self.pass.stage.is_some() {
+            self.counts.shaded += u64::from(bits.count_ones());
+            let passed = self.staged(simd, place, row, fx, z, bits);
+            self.counts.passed += u64::from(passed.count_ones());
+            if passed == 0 {
+                return;
+            }
+            mask32x16::from_bitmask(simd, u64::from(passed))
+        } else {
+            self.color(simd, place, row, fx, z, pass, bits)
+        };
+        if self.pass.alpha_test.is_none() {
+            self.keep_depth(simd, place, keep, z);
+        }
+    }
+
+    /// Tests depth and stencil of two rows of 8 pixels, where that is done here, and does what the stencil test does.
+    /// `None` if nothing passes.
+    #[inline(always)]
+    pub(crate) fn test<S: Simd>(
+        &mut self,
+        simd: S,
+        place: Place,
+        row: &Row<S>,
+        inside: mask32x16<S>,
+        bx: i32,
+    ) -> Option<Tested<S>> {
         let Place { lane, block, pair } = place;
-        let b = &*self.batch;
         let covered = inside.to_bitmask() as u16;
         if covered == 0 {
-            return;
+            return None;
+        }
+        if self.pass.alpha_test.is_some() && self.queue.has_some_of(block, pair, covered) {
+            // What becomes of them is what this is tested against.
+            self.shade_waiting(simd);
         }
         self.counts.tested += u64::from(covered.count_ones());
+        let b = &*self.batch;
         let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (b.offset[0][lane] + 8 * bx) as f32);
         let mut pass = inside;
         let mut z = row.depth;
@@ -516,21 +588,32 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             pass &= mask32x16::from_bitmask(simd, u64::from(bits));
         }
         if bits == 0 {
-            return;
+            return None;
         }
         self.buffer.written |= 1 << (block & 63);
-        let keep = if self.pass.stage.is_some() {
-            self.counts.shaded += u64::from(bits.count_ones());
-            let passed = self.staged(simd, place, row, fx, z, bits);
-            self.counts.passed += u64::from(passed.count_ones());
-            if passed == 0 {
-                return;
-            }
-            mask32x16::from_bitmask(simd, u64::from(passed))
-        } else {
-            self.counts.passed += u64::from(bits.count_ones());
-            self.color(simd, place, row, fx, z, pass, bits)
-        };
+        Some(Tested { fx, z, pass, bits })
+    }
+
+    /// Depths of two rows of 8 pixels.
+    #[inline(always)]
+    pub(crate) fn depth_at<S: Simd>(&self, simd: S, Place { lane, block, pair }: Place) -> f32x16<S> {
+        let (bx, y) = ((block % BLOCKS) as i32, (8 * (block / BLOCKS) + 2 * pair) as i32);
+        let b = &*self.batch;
+        let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (b.offset[0][lane] + 8 * bx) as f32);
+        along(simd, &b.depth, lane, self.row_at(simd, lane, y).depth, fx)
+            .max(f32x16::splat(simd, b.z_min[lane]))
+            .min(f32x16::splat(simd, b.z_max[lane]))
+    }
+
+    /// Writes depths and identifiers of the lanes in `keep`.
+    #[inline(always)]
+    pub(crate) fn keep_depth<S: Simd>(
+        &mut self,
+        simd: S,
+        Place { lane, block, pair }: Place,
+        keep: mask32x16<S>,
+        z: f32x16<S>,
+    ) {
         if self.pass.writes_depth {
             let plane = &mut self.buffer.depth[block][pair];
             let stored = f32x16::load_array_ref(simd, plane);
@@ -556,16 +639,20 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         bits: u16,
     ) -> mask32x16<S> {
         let lane = place.lane;
-        if self.pass.texture.is_some() {
+        if self.pass.waits {
             let (x, y) =
                 ((place.block % BLOCKS * 8) as i32, (8 * (place.block / BLOCKS) + 2 * place.pair) as i32);
             let b = &self.batch.offset;
             let offset = [(b[0][lane] + x) as f32, (b[1][lane] + y) as f32];
             self.counts.shaded += u64::from(bits.count_ones());
-            self.wait(simd, Waiting { place, offset, bits });
+            if self.pass.alpha_test.is_none() {
+                self.counts.passed += u64::from(bits.count_ones());
+            }
+            self.wait(simd, Waiting { place, offset, bits, samples: [0; 4] });
             return pass;
         }
         let mut keep = pass;
+        self.counts.passed += u64::from(bits.count_ones());
         let rgba = match self.pass.color {
             ColorPath::None => return pass,
             ColorPath::Constant(rgba) => splat4(simd, rgba),
@@ -775,7 +862,7 @@ fn edge_lanes<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize) -> i32x16<S> {
 
 /// The value of edge `k` at column `x`, row `y` of the tile.
 #[inline(always)]
-fn edge_at<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, [x, y]: [i32; 2]) -> i32x16<S> {
+pub(crate) fn edge_at<S: Simd>(simd: S, b: &Batch, k: usize, lane: usize, [x, y]: [i32; 2]) -> i32x16<S> {
     let along = b.edge_dx[k][lane].wrapping_mul(x);
     i32x16::splat(simd, b.edge[k][lane].wrapping_add(along).wrapping_add(b.edge_dy[k][lane].wrapping_mul(y)))
 }

@@ -22,7 +22,7 @@ pub(crate) fn is_color_only(pass: &Pass<'_>) -> bool {
     colored
         && blended
         && pass.format == ColorFormat::Rgba8
-        && pass.texture.is_none()
+        && !pass.waits
         && pass.stage.is_none()
         && pass.stencil.is_none()
         && !pass.touches.reads_depth

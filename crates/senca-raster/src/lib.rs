@@ -55,10 +55,12 @@ mod filled;
 mod lines;
 mod multisample;
 mod pixel;
+mod pixels;
 mod sample;
 pub mod scanline;
 mod setup;
 mod shade;
+mod shadow;
 mod sink;
 mod smooth;
 mod stage;
@@ -69,14 +71,15 @@ mod tile;
 mod tiled;
 
 pub use api::{
-    Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FragmentShader, Fragments, Ids,
-    Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading, State,
-    StencilOp, StencilTest, StippleJoins, StrokeRule, TextureUnit, Viewport,
+    AlphaTest, Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FragmentShader, Fragments,
+    Ids, Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading,
+    State, StencilOp, StencilTest, StippleJoins, StrokeRule, TextureUnit, Viewport,
 };
 pub use block_depths::BlockDepths;
 pub use fearless_simd::{self as simd, Level as SimdLevel};
 pub use multisample::SAMPLES;
 pub use scanline::ScanlineRasterizer;
+pub use shadow::ShadowUnit;
 pub use stage::{FragmentStage, PixelColors, Pixels, Samples};
 pub use target::{
     Buffers, Clear, ClearMasks, ColorPlane, MAX_TARGET_SIDE, Target, TargetError, rgba8_from_rgba,

@@ -15,10 +15,10 @@
 
 use crate::api::{Counters, Fragments, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shaded, Shading, State};
 use crate::assemble::{TriangleVaryings, for_each_triangle};
-use crate::multisample::{SAMPLES, sample_of};
+use crate::multisample::{SAMPLES, place_of, sample_of};
 use crate::setup::{HALF, SUB, ScreenMap, ScreenVertex, Setup, ceil_div};
-use crate::shade::{interpolate, shade_plain};
-use crate::stage::{FragmentStage, run_stage, run_stage_on_samples, stage_of};
+use crate::shade::{self, interpolate, shade_plain};
+use crate::stage::{run_stage, run_stage_on_samples, stage_of};
 use crate::target::Target;
 
 /// Draws triangle after triangle, row after row, on one thread. The oracle of
@@ -154,22 +154,15 @@ impl RowFiller<'_, '_> {
     }
 
     fn fill_group(&mut self, y: i32, columns: std::ops::Range<i32>) {
-        if self.state.multisample
-            && let Some(stage) = stage_of(self.shading)
-        {
-            return self.fill_samples(stage, y, columns);
+        if self.state.multisample && self.shading.colors_pixels() {
+            return self.fill_samples(y, columns);
         }
         let first_lane = 8 * (y & 1) as usize;
         let mut batch = Batch { x: columns.start & !7, y: y & !1, mask: 0, depth: [0.0; LANES] };
         for x in columns {
             let [fx, fy] = self.offset(x, y);
             let depth = self.setup.depth(fx, fy);
-            self.counters.tested += 1;
-            let passes = match stage_of(self.shading) {
-                Some(_) => self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth),
-                None => crate::pixel::passes(self.target, self.state, x, y, depth),
-            };
-            if passes {
+            if self.passes(x, y, depth) {
                 let lane = first_lane + (x & 7) as usize;
                 batch.mask |= 1 << lane;
                 batch.depth[lane] = depth;
@@ -194,14 +187,13 @@ impl RowFiller<'_, '_> {
     }
 
     /// One row of samples of four pixels.
-    fn fill_samples(&mut self, stage: &dyn FragmentStage, y: i32, columns: std::ops::Range<i32>) {
+    fn fill_samples(&mut self, y: i32, columns: std::ops::Range<i32>) {
         let (mut masks, mut depths) = ([0u16; SAMPLES], [[0.0; LANES]; SAMPLES]);
         let corner = [columns.start & !7, y & !7];
         for x in columns {
             let [fx, fy] = self.offset(x, y);
             let depth = self.setup.depth(fx, fy);
-            self.counters.tested += 1;
-            if self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth) {
+            if self.passes(x, y, depth) {
                 let (sample, lane) = sample_of((x & 7) as usize, (y & 7) as usize);
                 masks[sample] |= 1 << lane;
                 depths[sample][lane] = depth;
@@ -216,7 +208,7 @@ impl RowFiller<'_, '_> {
         let [fx, fy] = self.offset(corner[0], corner[1]);
         let mut depth = [0.0; LANES];
         for lane in 0..LANES {
-            let at = [fx + 0.5 + (lane % 4 * 2) as f32, fy + 0.5 + (lane / 4 * 2) as f32];
+            let at = shade::place_of(4, [fx, fy], lane);
             let weights = self.setup.weights(at[0], at[1]);
             depth[lane] = self.setup.depth(at[0], at[1]);
             for (k, plane) in values.iter_mut().enumerate() {
@@ -236,8 +228,47 @@ impl RowFiller<'_, '_> {
             coverage: None,
         };
         self.counters.shaded += u64::from(mask.count_ones());
-        self.counters.passed +=
-            run_stage_on_samples(stage, self.target, 0, self.state, &fragments, &masks, &depths);
+        self.counters.passed += match stage_of(self.shading) {
+            Some(stage) => {
+                run_stage_on_samples(stage, self.target, 0, self.state, &fragments, &masks, &depths)
+            }
+            None => {
+                let mut shaded = Shaded::default();
+                shade_plain(self.shading, self.setup, self.varyings, [fx, fy], &fragments, &mut shaded);
+                self.write_samples(corner, &shaded, &masks, &depths)
+            }
+        };
+    }
+
+    /// Writes the samples of four by four pixels; returns how many.
+    fn write_samples(
+        &mut self,
+        corner: [i32; 2],
+        shaded: &Shaded,
+        masks: &[u16; SAMPLES],
+        depths: &[[f32; LANES]; SAMPLES],
+    ) -> u64 {
+        let colors = self.target.color.is_some();
+        let masks = masks.map(|mask| mask & shaded.keep);
+        for (sample, (mask, depths)) in masks.iter().zip(depths).enumerate() {
+            for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
+                let (x, y) = place_of(sample, lane);
+                let (x, y) = (corner[0] + x as i32, corner[1] + y as i32);
+                let rgba = colors.then(|| shaded.rgba.map(|plane| plane[lane]));
+                crate::pixel::write(self.target, self.state, x, y, depths[lane], self.id, rgba);
+            }
+        }
+        masks.iter().map(|mask| u64::from(mask.count_ones())).sum()
+    }
+
+    /// Whether a fragment or sample passes the tests that are the rasterizer's business. Does what the stencil test
+    /// does.
+    fn passes(&mut self, x: i32, y: i32, depth: f32) -> bool {
+        self.counters.tested += 1;
+        match stage_of(self.shading) {
+            Some(_) => self.untested || crate::pixel::depth_passes(self.target, self.state, x, y, depth),
+            None => crate::pixel::passes(self.target, self.state, x, y, depth),
+        }
     }
 
     /// Calls `with` with the fragments of a batch, and where its lane 0 is.
@@ -264,13 +295,17 @@ impl RowFiller<'_, '_> {
     fn write(&mut self, batch: &Batch) {
         let mut shaded = Shaded::default();
         let colors = self.target.color.is_some() && !matches!(self.shading, Shading::None);
-        if colors || matches!(self.shading, Shading::Custom(_)) {
+        let tests_alpha = self.shading.alpha_test().is_some();
+        if colors || tests_alpha || matches!(self.shading, Shading::Custom(_)) {
             self.with_fragments(batch, |row, fragments, at| {
                 shade_plain(row.shading, row.setup, row.varyings, at, fragments, &mut shaded);
             });
             self.counters.shaded += u64::from(batch.mask.count_ones());
         }
         let mask = batch.mask & shaded.keep;
+        if tests_alpha {
+            self.counters.passed -= u64::from((batch.mask & !mask).count_ones());
+        }
         for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
             let (x, y) = (batch.x + (lane % 8) as i32, batch.y + (lane / 8) as i32);
             let rgba = colors.then(|| shaded.rgba.map(|plane| plane[lane]));

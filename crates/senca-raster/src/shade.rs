@@ -55,26 +55,44 @@ pub(crate) fn shade_plain(
     match shading {
         Shading::None | Shading::Stage(_) => {}
         Shading::Custom(shader) => shader.shade(fragments, out),
-        Shading::Fixed { color, texture } => {
+        Shading::Fixed { color, texture, shadow, alpha_test } => {
             for lane in fragments.lanes() {
                 let mut rgba = color_of(color, fragments.varyings, lane);
+                if let Some(unit) = shadow {
+                    let of_lane = |k: usize| fragments.varyings.get(k).map_or(0.0, |plane| plane[lane]);
+                    let coords = [0, 1, 2, 3].map(|k| of_lane(unit.coords.saturating_add(k)));
+                    rgba = unit.dimmed(rgba, unit.light(coords));
+                }
                 if let Some(unit) = texture {
-                    let at = [origin_to_lane0[0] + (lane % 8) as f32, origin_to_lane0[1] + (lane / 8) as f32];
+                    let at = place_of(fragments.columns as usize, origin_to_lane0, lane);
                     let texel = texture_at(unit, setup, varyings, at);
                     rgba = std::array::from_fn(|k| rgba[k] * texel[k]);
                 }
                 out.set(lane, rgba);
+                if alpha_test.is_some_and(|test| !test.passes(rgba[3])) {
+                    out.discard(lane);
+                }
             }
         }
     }
 }
 
+/// Where a lane is, from the reference: the middle of the samples of its pixel if there are four pixels in a row.
+pub(crate) fn place_of(columns: usize, [x, y]: [f32; 2], lane: usize) -> [f32; 2] {
+    let (column, row) = ((lane % columns) as f32, (lane / columns) as f32);
+    if columns == 8 { [x + column, y + row] } else { [x + 0.5 + 2.0 * column, y + 0.5 + 2.0 * row] }
+}
+
 /// Colour of a fragment with these varyings, which do not change from pixel to pixel.
 #[inline(always)]
 pub(crate) fn color_of_values(shading: &Shading<'_>, values: &[f32]) -> [f32; 4] {
-    let Shading::Fixed { color, texture } = shading else { return [0.0, 0.0, 0.0, 1.0] };
+    let Shading::Fixed { color, texture, shadow, .. } = shading else { return [0.0, 0.0, 0.0, 1.0] };
     let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
-    let rgba = source_color(color, values);
+    let mut rgba = source_color(color, values);
+    if let Some(unit) = shadow {
+        let coords = [0, 1, 2, 3].map(|k| at(unit.coords.saturating_add(k)));
+        rgba = unit.dimmed(rgba, unit.light(coords));
+    }
     let Some(unit) = texture else { return rgba };
     let uv = [at(unit.coords), at(unit.coords.saturating_add(1))];
     let texel = unit.sampler.sample(unit.texture, uv, [[0.0; 2]; 2]);

@@ -126,7 +126,9 @@ impl<'a, 't> Sink<'a, 't> {
 
     /// The planes, where fragments go in plain colours, unblended, to 8 bits.
     pub(crate) fn plain(&mut self) -> Option<Plain<'_>> {
-        let Shading::Fixed { color, texture: None } = self.shading else { return None };
+        let Shading::Fixed { color, texture: None, shadow: None, alpha_test: None } = self.shading else {
+            return None;
+        };
         let stencil = self.state.stencil.is_some() && self.target.stencil.is_some();
         let simple = self.state.blend.is_none() && self.target.ids.is_none() && !stencil;
         let width = self.target.width as usize;
@@ -176,7 +178,6 @@ impl<'a, 't> Sink<'a, 't> {
             self.gather(x, y, depth, coverage, values);
             return;
         }
-        self.counters.passed += 1;
         let mut rgba = None;
         if !matches!(self.shading, Shading::None) {
             let out = &mut self.values[..self.stride];
@@ -185,7 +186,11 @@ impl<'a, 't> Sink<'a, 't> {
             color[3] *= coverage;
             rgba = Some(color);
             self.counters.shaded += 1;
+            if self.shading.alpha_test().is_some_and(|test| !test.passes(color[3])) {
+                return;
+            }
         }
+        self.counters.passed += 1;
         crate::pixel::write(self.target, self.state, x, row, depth, self.id, rgba);
     }
 

@@ -1,4 +1,4 @@
-//! Textured fragments, many vectors at a time and in stages.
+//! Textured fragments, and those in the light of a shadow map, many vectors at a time and in stages.
 //!
 //! A texel is read long after its address is known, and vectors of texels can only be loaded once all
 //! their lanes have been written. So vectors of fragments are kept until there are several of one batch
@@ -15,12 +15,16 @@
 //!
 //! Two levels are mixed in integers, with a share in 1/256.
 //!
+//! Shadow maps are looked up before, vector by vector, and dim what the texture is multiplied by. Where pixels have
+//! several samples a vector is the pixels of a block ([`crate::pixels`]).
+//!
 //! This holds for linear filters on texels of 8 bits, and, with fewer stages, for the nearest texel of a
 //! single level; other textures are read vector by vector ([`crate::sample`]).
 
 use crate::api::{LANES, MAX_VARYINGS, TextureUnit};
 use crate::blend::{Rgba, byte, channel};
-use crate::cover::{At, ColorPath, Place, TileDraw, colors, lanes_from, splat4, varying};
+use crate::cover::{At, ColorPath, Place, TileDraw, colors, compare, lanes_from, splat4, varying};
+use crate::pixels;
 use crate::sample::{
     FARTHEST_TAME, Quads, footprint, gather_words, load4, lod_of, low, nearest_index, pair_texels, quads,
     sample, sums, taps,
@@ -34,7 +38,8 @@ const WAITING: usize = 16;
 /// Vectors staged together.
 const STAGED: usize = 4;
 
-/// Two rows of 8 fragments whose depth has been tested.
+/// Two rows of 8 fragments whose depth has been tested, or the sixteen pixels of a block some of whose samples have
+/// passed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Waiting {
     pub(crate) place: Place,
@@ -42,20 +47,58 @@ pub(crate) struct Waiting {
     pub(crate) offset: [f32; 2],
     /// Lanes to draw.
     pub(crate) bits: u16,
+    /// Of pixels of several samples those to draw, by row of pixels.
+    pub(crate) samples: [u16; 4],
 }
 
 /// Vectors of the current batch that have no colour yet, in the order they are to be written.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct TextureQueue {
     waiting: [Waiting; WAITING],
     len: usize,
+    /// Where there is an alpha test: lanes of each vector of a tile that wait.
+    of_tile: Box<[[u16; 4]; BLOCKS * BLOCKS]>,
     lookups: Box<[Lookup; WAITING]>,
     staged: Box<[Job; STAGED]>,
 }
 
+impl Default for TextureQueue {
+    fn default() -> Self {
+        Self {
+            waiting: Default::default(),
+            len: 0,
+            of_tile: Box::new([[0; 4]; BLOCKS * BLOCKS]),
+            lookups: Box::default(),
+            staged: Box::default(),
+        }
+    }
+}
+
 impl TextureQueue {
     /// Memory of its boxes.
-    pub(crate) const BOXED_BYTES: usize = WAITING * size_of::<Lookup>() + STAGED * size_of::<Job>();
+    pub(crate) const BOXED_BYTES: usize =
+        WAITING * size_of::<Lookup>() + STAGED * size_of::<Job>() + size_of::<[[u16; 4]; BLOCKS * BLOCKS]>();
+
+    /// Whether some of these lanes wait.
+    #[inline(always)]
+    pub(crate) fn has_some_of(&self, block: usize, pair: usize, lanes: u16) -> bool {
+        self.of_tile[block % (BLOCKS * BLOCKS)][pair % 4] & lanes != 0
+    }
+
+    /// Notes that the lanes of a vector wait, or do no longer.
+    #[inline(always)]
+    fn note(&mut self, vector: &Waiting, per_pixel: bool, wait: bool) {
+        let of_block = &mut self.of_tile[vector.place.block % (BLOCKS * BLOCKS)];
+        let lanes = if wait { u16::MAX } else { 0 };
+        if per_pixel {
+            for (of_pair, samples) in of_block.iter_mut().zip(vector.samples) {
+                *of_pair = (*of_pair & !samples) | (samples & lanes);
+            }
+        } else {
+            let of_pair = &mut of_block[vector.place.pair % 4];
+            *of_pair = (*of_pair & !vector.bits) | (vector.bits & lanes);
+        }
+    }
 }
 
 /// What a vector wants of its texture.
@@ -80,9 +123,8 @@ struct Lookup {
 /// Fragments between stages: lanes of one vector that read the same levels.
 #[derive(Clone, Copy, Debug, Default)]
 struct Job {
-    place: Place,
     bits: u16,
-    /// Number of the lookup.
+    /// Number of the vector and its lookup.
     lookup: usize,
     /// Number of the finer level.
     level: usize,
@@ -133,6 +175,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         if self.queue.len == WAITING {
             self.shade_waiting(simd);
         }
+        if self.pass.alpha_test.is_some() {
+            self.queue.note(&vector, self.pass.per_pixel, true);
+        }
         self.queue.waiting[self.queue.len % WAITING] = vector;
         self.queue.len += 1;
     }
@@ -150,13 +195,13 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             let b = &self.batch.offset;
             let (x, y) = ((b[0][lane] + 8 * bx) as f32, b[1][lane] + 8 * by);
             let block = (8 * by + bx) as usize % (BLOCKS * BLOCKS);
+            self.buffer.written |= 1 << block;
             for pair in 0..4 {
                 let (place, offset) = (Place { lane, block, pair }, [x, (y + 2 * pair as i32) as f32]);
                 self.queue.waiting[(self.queue.len + pair) % WAITING] =
-                    Waiting { place, offset, bits: u16::MAX };
+                    Waiting { place, offset, bits: u16::MAX, samples: [0; 4] };
             }
             self.queue.len += 4;
-            self.buffer.written |= 1 << block;
         }
         let count = 64 * u64::from((blocks & 255).count_ones());
         self.counts.tested += count;
@@ -169,18 +214,31 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     /// A function of its own in the compiled kernel: inlined, it makes code of many megabytes.
     #[inline(always)]
     pub(crate) fn shade_waiting<S: Simd>(&mut self, simd: S) {
-        let Some((unit, slot)) = self.pass.texture else { return };
         if self.queue.len > 0 {
             simd.vectorize(
                 #[inline(always)]
-                || self.shade_waiting_inline(simd, unit, slot),
+                || self.shade_waiting_inline(simd),
             );
         }
     }
 
     #[inline(always)]
-    fn shade_waiting_inline<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, slot: usize) {
+    fn shade_waiting_inline<S: Simd>(&mut self, simd: S) {
         let count = std::mem::take(&mut self.queue.len).min(WAITING);
+        if self.pass.alpha_test.is_some() {
+            for k in 0..count {
+                let vector = self.queue.waiting[k];
+                self.queue.note(&vector, self.pass.per_pixel, false);
+            }
+        }
+        let Some((unit, slot)) = self.pass.texture else {
+            for k in 0..count {
+                let vector = self.queue.waiting[k];
+                let color = self.base_color(simd, &vector, &self.at_vector(simd, &vector));
+                self.write_waiting(simd, &vector, vector.bits, color);
+            }
+            return;
+        };
         if let Some(texels) = sharp_texels(unit) {
             return self.shade_sharp(simd, unit, texels, slot, count);
         }
@@ -211,7 +269,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 let here = levels.simd_eq(i32x16::splat(simd, number)).to_bitmask() as u32 & left;
                 left &= !here;
                 let job = &mut self.queue.staged[staged % STAGED];
-                (job.place, job.bits, job.lookup) = (vector.place, here as u16, k);
+                (job.bits, job.lookup) = (here as u16, k);
                 job.level = number as usize;
                 job.address(simd, unit, lookup);
                 staged += 1;
@@ -233,9 +291,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             for k in 0..staged {
                 let vector = self.queue.waiting[(first + k) % WAITING];
                 let (uv, at) = self.coordinates(simd, &vector, slot);
-                self.keep_color(simd, &at, vector.place.lane, first + k);
+                self.keep_color(simd, &at, first + k);
                 let job = &mut self.queue.staged[k];
-                (job.place, job.bits, job.lookup) = (vector.place, vector.bits, first + k);
+                (job.bits, job.lookup) = (vector.bits, first + k);
                 (job.level, job.two_levels) = (0, false);
                 job.taps[0].address(simd, unit, level, uv, are_tame(simd, uv));
             }
@@ -257,7 +315,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         for k in 0..count {
             let vector = self.queue.waiting[k];
             let (uv, at) = self.coordinates(simd, &vector, slot);
-            self.keep_color(simd, &at, vector.place.lane, k);
+            self.keep_color(simd, &at, k);
             let index = if are_tame(simd, uv) {
                 nearest_index::<S, true>(simd, &unit.sampler, level, uv)
             } else {
@@ -271,31 +329,90 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         for k in 0..count {
             let vector = self.queue.waiting[k];
             let texel = u32x16::load_array_ref(simd, &self.queue.lookups[k].texel);
-            self.put(simd, vector.place, vector.bits, k, Single(texel));
+            self.put(simd, vector.bits, k, Single(texel));
         }
     }
 
-    /// Writes texels times colour, which is found with the lookup of number `lookup`.
+    /// Writes texels times colour, to the lanes in `bits` of the vector of number `k`, with whose lookup the colour is.
     #[inline(always)]
-    fn put<S: Simd>(&mut self, simd: S, place: Place, bits: u16, lookup: usize, texels: impl ReadTexels<S>) {
-        let mask = mask32x16::from_bitmask(simd, u64::from(bits));
-        let color = match self.pass.color {
-            ColorPath::Constant(rgba) if FAST => {
+    fn put<S: Simd>(&mut self, simd: S, bits: u16, k: usize, texels: impl ReadTexels<S>) {
+        let vector = self.queue.waiting[k % WAITING];
+        let color = match self.same_color() {
+            Some(rgba) if FAST && self.pass.alpha_test.is_none() => {
                 // Where the colour is 1, the bytes are what they are.
                 let packed = tinted(simd, texels.bytes(simd), 0, rgba[0], &texels);
                 let packed = tinted(simd, packed, 1, rgba[1], &texels);
                 let packed = tinted(simd, packed, 2, rgba[2], &texels);
                 let packed = tinted(simd, packed, 3, rgba[3], &texels);
-                let plane = &mut self.buffer.rgba8[place.block % (BLOCKS * BLOCKS)][place.pair % 4];
-                let stored = u32x16::load_array_ref(simd, plane);
-                return mask.select(packed, stored).store_array(plane);
+                return self.write_packed_waiting(simd, &vector, bits, packed);
             }
-            ColorPath::Constant(rgba) => splat4(simd, rgba),
-            _ => load4(simd, &self.queue.lookups[lookup % WAITING].color),
+            Some(rgba) => splat4(simd, rgba),
+            None => load4(simd, &self.queue.lookups[k % WAITING].color),
         };
         let texel =
             [texels.number(simd, 0), texels.number(simd, 1), texels.number(simd, 2), texels.number(simd, 3)];
-        self.write(simd, place, mask, times(color, texel));
+        self.write_waiting(simd, &vector, bits, times(color, texel));
+    }
+
+    /// Writes the lanes in `bits` of a vector.
+    #[inline(always)]
+    fn write_waiting<S: Simd>(&mut self, simd: S, vector: &Waiting, bits: u16, rgba: Rgba<S>) {
+        let mut bits = bits;
+        if let Some(test) = self.pass.alpha_test {
+            let alpha = rgba[3].max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
+            let passes = compare(simd, test.compare, alpha, f32x16::splat(simd, test.reference));
+            bits &= passes.to_bitmask() as u16;
+            self.keep_waiting(simd, vector, bits);
+        }
+        if self.pass.per_pixel {
+            self.write_pixels(simd, vector.place.block, &vector.samples, bits, rgba);
+        } else {
+            self.write(simd, vector.place, mask32x16::from_bitmask(simd, u64::from(bits)), rgba);
+        }
+    }
+
+    /// Keeps depths and identifiers of the lanes in `bits`, which have passed the alpha test, of a vector.
+    #[inline(always)]
+    fn keep_waiting<S: Simd>(&mut self, simd: S, vector: &Waiting, bits: u16) {
+        let place = vector.place;
+        for (pair, samples) in vector.samples.iter().enumerate() {
+            let (pair, mask) = match self.pass.per_pixel {
+                true => (pair, pixels::samples_in(*samples, bits, pair)),
+                false if pair == 0 => (place.pair, bits),
+                false => return,
+            };
+            if mask == 0 {
+                continue;
+            }
+            self.counts.passed += u64::from(mask.count_ones());
+            if self.pass.writes_depth || self.pass.has_ids {
+                let place = Place { pair, ..place };
+                let keep = mask32x16::from_bitmask(simd, u64::from(mask));
+                self.keep_depth(simd, place, keep, self.depth_at(simd, place));
+            }
+        }
+    }
+
+    /// The same of packed colours that replace what is there.
+    #[inline(always)]
+    fn write_packed_waiting<S: Simd>(&mut self, simd: S, vector: &Waiting, bits: u16, packed: u32x16<S>) {
+        let place = vector.place;
+        if self.pass.per_pixel {
+            return self.write_packed_pixels(simd, place.block, &vector.samples, bits, packed);
+        }
+        let mask = mask32x16::from_bitmask(simd, u64::from(bits));
+        let plane = &mut self.buffer.rgba8[place.block % (BLOCKS * BLOCKS)][place.pair % 4];
+        let stored = u32x16::load_array_ref(simd, plane);
+        mask.select(packed, stored).store_array(plane);
+    }
+
+    /// What the texture is multiplied by, if that is the same everywhere.
+    #[inline(always)]
+    fn same_color(&self) -> Option<[f32; 4]> {
+        match self.pass.color {
+            ColorPath::Constant(rgba) if self.pass.shadow.is_none() => Some(rgba),
+            _ => None,
+        }
     }
 
     /// Texture coordinates of a vector that waits.
@@ -308,11 +425,11 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         ([varying(simd, u, lane, &at), varying(simd, v, lane, &at)], at)
     }
 
-    /// Puts the colour by the lookup of number `k`, unless it is the same everywhere.
+    /// Puts the colour of the vector of number `k` by its lookup, unless it is the same everywhere.
     #[inline(always)]
-    fn keep_color<S: Simd>(&mut self, simd: S, at: &At<S>, lane: usize, k: usize) {
-        if !matches!(self.pass.color, ColorPath::Constant(_)) {
-            let color = self.base_color(simd, lane, at);
+    fn keep_color<S: Simd>(&mut self, simd: S, at: &At<S>, k: usize) {
+        if self.same_color().is_none() {
+            let color = self.base_color(simd, &self.queue.waiting[k % WAITING], at);
             store4(color, &mut self.queue.lookups[k % WAITING].color);
         }
     }
@@ -323,7 +440,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let vector = self.queue.waiting[k];
         let lane = vector.place.lane;
         let (uv, at) = self.coordinates(simd, &vector, slot);
-        self.keep_color(simd, &at, lane, k);
+        self.keep_color(simd, &at, k);
         let lookup = &mut self.queue.lookups[k];
         footprint(simd, unit.texture, self.batch, lane, slot, &at, uv).store_array(&mut lookup.footprint);
         lookup.tame = are_tame(simd, uv);
@@ -336,25 +453,52 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     fn shade_one<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, slot: usize, vector: Waiting) {
         let mask = mask32x16::from_bitmask(simd, u64::from(vector.bits));
         let at = self.at_vector(simd, &vector);
-        let rgba = self.base_color(simd, vector.place.lane, &at);
+        let rgba = self.base_color(simd, &vector, &at);
         let texel = sample(simd, unit, self.batch, vector.place.lane, slot, &at, mask);
-        self.write(simd, vector.place, mask, times(rgba, texel));
+        self.write_waiting(simd, &vector, vector.bits, times(rgba, texel));
     }
 
     #[inline(always)]
     fn at_vector<S: Simd>(&self, simd: S, vector: &Waiting) -> At<S> {
-        let [fx, fy] = lanes_from(simd, vector.offset);
+        let [fx, fy] = match self.pass.per_pixel {
+            true => {
+                let [x, y] = vector.offset;
+                [
+                    f32x16::load_array(simd, pixels::LANE_FX) + f32x16::splat(simd, x),
+                    f32x16::load_array(simd, pixels::LANE_FY) + f32x16::splat(simd, y),
+                ]
+            }
+            false => lanes_from(simd, vector.offset),
+        };
         self.at(simd, vector.place.lane, fx, fy)
     }
 
     /// What the texture is multiplied by.
     #[inline(always)]
-    fn base_color<S: Simd>(&self, simd: S, lane: usize, at: &At<S>) -> Rgba<S> {
-        match self.pass.color {
+    fn base_color<S: Simd>(&self, simd: S, vector: &Waiting, at: &At<S>) -> Rgba<S> {
+        let lane = vector.place.lane;
+        let color = match self.pass.color {
             ColorPath::Constant(rgba) => splat4(simd, rgba),
             ColorPath::Varying { alpha } => colors(simd, self.batch, lane, 0, alpha, at),
             ColorPath::None | ColorPath::Plain => splat4(simd, [1.0; 4]),
-        }
+        };
+        let Some((unit, slot)) = self.pass.shadow else { return color };
+        let [s, t, r, q] = [
+            &self.batch.varyings[slot % MAX_VARYINGS],
+            &self.batch.varyings[(slot + 1) % MAX_VARYINGS],
+            &self.batch.varyings[(slot + 2) % MAX_VARYINGS],
+            &self.batch.varyings[(slot + 3) % MAX_VARYINGS],
+        ];
+        let coords = [
+            varying(simd, s, lane, at),
+            varying(simd, t, lane, at),
+            varying(simd, r, lane, at),
+            varying(simd, q, lane, at),
+        ];
+        let light = unit.light_lanes(simd, coords, vector.bits);
+        let [r, g, b, a] = color;
+        let [r, g, b] = if unit.dims_colors { [r * light, g * light, b * light] } else { [r, g, b] };
+        [r, g, b, if unit.dims_alpha { a * light } else { a }]
     }
 
     /// Fetches the texels of the first `count` jobs, then mixes them.
@@ -374,14 +518,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
         for k in 0..count {
             let job = &self.queue.staged[k];
-            let (place, bits, lookup) = (job.place, job.bits, job.lookup);
+            let (bits, lookup) = (job.bits, job.lookup);
             let fine = job.taps[0].mean(simd);
             if job.two_levels {
                 let share = i32x16::load_array_ref(simd, &self.queue.lookups[lookup % WAITING].share);
                 let mixed = OfLevels::new(simd, fine, job.taps[1].mean(simd), share.bitcast());
-                self.put(simd, place, bits, lookup, mixed);
+                self.put(simd, bits, lookup, mixed);
             } else {
-                self.put(simd, place, bits, lookup, fine);
+                self.put(simd, bits, lookup, fine);
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::assemble::{varyings_of, vertex_count};
 use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::block_depths::BlockDepths;
-use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, slots};
+use crate::cover::{ColorPath, FragmentCounts, Pass, SHADOW_SLOTS, TileDraw, slots};
 use crate::filled::is_color_only;
 use crate::pixel::{clear_bounds, clear_in_scissor};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
@@ -330,14 +330,21 @@ fn pass<'a>(
     let ordered = reversed || matches!(state.depth_test, Compare::Less | Compare::LessEqual);
     let stencil = state.stencil.filter(|_| stage.is_none() && target.stencil.is_some());
     let hides_farther = tests_depth && ordered && !stencil.is_some_and(|test| test.needs_failures());
-    let drops = if stage.is_some() { needs.discards } else { custom || stencil.is_some() };
+    let alpha_test = shading.alpha_test();
+    let drops =
+        if stage.is_some() { needs.discards } else { custom || stencil.is_some() || alpha_test.is_some() };
     let slots = slots(shading, color, triangles.stride);
-    let texture = match shading {
-        Shading::Fixed { texture: Some(unit), .. } if color != ColorPath::None => {
-            Some((unit, slots.len() - 2))
+    let (texture, shadow) = match shading {
+        Shading::Fixed { texture, shadow, .. } if color != ColorPath::None => {
+            let of_shadow = slots.len() - if shadow.is_some() { SHADOW_SLOTS } else { 0 };
+            (
+                texture.as_ref().map(|unit| (unit, of_shadow - 2)),
+                shadow.as_ref().map(|unit| (unit, of_shadow)),
+            )
         }
-        _ => None,
+        _ => (None, None),
     };
+    let waits = texture.is_some() || shadow.is_some() || alpha_test.is_some();
     let texels = texture.map(|(unit, _)| unit.texture.levels.iter().filter_map(|l| l.texels.rgba8()));
     let mut pass = Pass {
         map,
@@ -374,7 +381,11 @@ fn pass<'a>(
             && target.ids.is_none(),
         color,
         texture,
-        texture_only: texture.is_some() && !reads_depth && stencil.is_none() && target.ids.is_none(),
+        shadow,
+        alpha_test,
+        waits,
+        waits_only: waits && !reads_depth && stencil.is_none() && target.ids.is_none(),
+        per_pixel: waits && state.multisample,
         texels: texels.into_iter().flatten().collect(),
         slots,
         color_only: false,

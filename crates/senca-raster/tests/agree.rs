@@ -2,10 +2,10 @@
 
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Blend, Buffers, Clear, ColorPlane, ColorSource, Compare, Counters, Cull, DepthBias, FragmentShader,
-    Fragments, Ids, Interpolation, Primitives, Rasterizer, Rect, Sampler, ScanlineRasterizer, Shaded,
-    Shading, SimdLevel, State, Target, Texels, Texture, TextureUnit, TiledRasterizer, TiledSettings,
-    Viewport,
+    AlphaTest, Blend, BlockDepths, Buffers, Clear, ColorPlane, ColorSource, Compare, Counters, Cull,
+    DepthBias, Filter, FragmentShader, Fragments, Ids, Interpolation, Primitives, Rasterizer, Rect, Sampler,
+    ScanlineRasterizer, Shaded, Shading, ShadowUnit, SimdLevel, State, Target, Texels, Texture, TextureUnit,
+    TiledRasterizer, TiledSettings, Viewport,
 };
 
 /// Numbers in [0, 1), the same in every run.
@@ -128,7 +128,12 @@ fn states() -> Vec<State> {
 
 #[test]
 fn both_rasterizers_draw_the_same_at_every_size() {
-    let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };
+    let shading = Shading::Fixed {
+        color: senca_raster::ColorSource::Rgba { first: 0 },
+        texture: None,
+        shadow: None,
+        alpha_test: None,
+    };
     for (k, size) in SIZES.into_iter().enumerate() {
         let mesh = Mesh::random(k as u64 + 1, 120);
         for (s, state) in states().into_iter().enumerate() {
@@ -147,7 +152,12 @@ fn both_rasterizers_draw_the_same_at_every_size() {
 #[test]
 fn levels_and_threads_do_not_change_a_byte() {
     let mesh = Mesh::random(99, 9000);
-    let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };
+    let shading = Shading::Fixed {
+        color: senca_raster::ColorSource::Rgba { first: 0 },
+        texture: None,
+        shadow: None,
+        alpha_test: None,
+    };
     let (reference, counters) =
         draw(&mut tiled(1, SimdLevel::baseline()), [301, 190], &mesh, &State::default(), &shading);
     for level in levels() {
@@ -189,7 +199,7 @@ fn textured_triangles_of_all_sizes_agree() {
         let texture = Texture::new(48, 20, texels).unwrap().with_mipmaps();
         let unit = TextureUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 2 };
         for color in [ColorSource::Constant([1.0, 0.5, 0.25, 0.5]), ColorSource::Rgba { first: 0 }] {
-            let shading = Shading::Fixed { color, texture: Some(unit) };
+            let shading = Shading::Fixed { color, texture: Some(unit), shadow: None, alpha_test: None };
             for state in [State::default(), over] {
                 let (plain, _) = draw(&mut ScanlineRasterizer, [150, 90], &mesh, &state, &shading);
                 let (reference, _) = draw(&mut tiled(1, levels()[0]), [150, 90], &mesh, &state, &shading);
@@ -272,7 +282,12 @@ fn a_part_is_cleared_as_it_is_drawn() {
 #[test]
 fn eight_bit_targets_agree() {
     let mesh = Mesh::random(11, 300);
-    let shading = Shading::Fixed { color: senca_raster::ColorSource::Rgba { first: 0 }, texture: None };
+    let shading = Shading::Fixed {
+        color: senca_raster::ColorSource::Rgba { first: 0 },
+        texture: None,
+        shadow: None,
+        alpha_test: None,
+    };
     for blend in [None, Some(Blend::OVER), Some(Blend::ADD), Some(Blend::MULTIPLY)] {
         let state = State {
             blend,
@@ -303,7 +318,7 @@ fn whole_blocks_of_colour_agree() {
         ColorSource::Constant([0.9, 1.3, -0.2, 0.4]),
     ];
     for color in shadings {
-        let shading = Shading::Fixed { color, texture: None };
+        let shading = Shading::Fixed { color, texture: None, shadow: None, alpha_test: None };
         for blend in [None, Some(Blend::OVER), Some(Blend::ADD)] {
             let state = State {
                 blend,
@@ -337,7 +352,12 @@ fn textured_bytes_are_rounded_numbers() {
     for sampler in [Sampler::NEAREST, Sampler::BILINEAR, Sampler::TRILINEAR] {
         let unit = TextureUnit { texture: &texture, sampler, coords: 2 };
         for color in [[1.0; 4], [1.0, 0.7, 1.0, 0.3]] {
-            let shading = Shading::Fixed { color: ColorSource::Constant(color), texture: Some(unit) };
+            let shading = Shading::Fixed {
+                color: ColorSource::Constant(color),
+                texture: Some(unit),
+                shadow: None,
+                alpha_test: None,
+            };
             let mut numbers = vec![[0f32; 4]; 150 * 90];
             let mut bytes = vec![[0u8; 4]; 150 * 90];
             for plane in [ColorPlane::Rgba32F(&mut numbers), ColorPlane::Rgba8(&mut bytes)] {
@@ -450,5 +470,110 @@ fn scratch_memory_is_bounded() {
         rasterizer.draw(&mut target, &mesh.primitives(), &State::default(), &Shading::None);
         let per_triangle = (rasterizer.scratch_bytes() - 150_000) as f64 / 80_000.0;
         assert!(per_triangle <= 100.0, "{per_triangle} bytes per triangle at {side}");
+    }
+}
+
+/// Depths with flat and uneven parts.
+fn depths_of_a_mesh() -> BlockDepths {
+    let mesh = Mesh::random(9, 60);
+    let mut depths = BlockDepths::new(300, 170, 1.0).unwrap();
+    let clear = Clear { depth: Some(1.0), ..Clear::default() };
+    let state = State { clear: Some(clear), ..State::default() };
+    TiledRasterizer::default().draw_depths(&mut depths, &[(mesh.primitives(), state)]);
+    depths
+}
+
+/// Colours by vertex, textures, shadow maps and alpha tests, in all combinations.
+fn fixed_shadings<'a>(texture: &'a Texture, depths: &'a BlockDepths) -> Vec<Shading<'a>> {
+    let unit = TextureUnit { texture, sampler: Sampler::TRILINEAR, coords: 1 };
+    let light = |filter, compare, dims_colors| {
+        Some(ShadowUnit { depths, coords: 0, compare, filter, dims_colors, dims_alpha: !dims_colors })
+    };
+    let shadows = [
+        None,
+        light(Filter::Nearest, Compare::LessEqual, true),
+        light(Filter::Linear, Compare::GreaterEqual, false),
+    ];
+    let tests = [None, Some(AlphaTest { compare: Compare::Greater, reference: 0.4 })];
+    let mut shadings = Vec::new();
+    for color in [ColorSource::Constant([1.0, 0.5, 0.75, 0.5]), ColorSource::Rgba { first: 0 }] {
+        for (texture, shadow) in [None, Some(unit)].into_iter().flat_map(|t| shadows.map(|s| (t, s))) {
+            shadings.extend(tests.map(|alpha_test| Shading::Fixed { color, texture, shadow, alpha_test }));
+        }
+    }
+    shadings
+}
+
+#[test]
+fn textures_shadows_and_alpha_tests_agree_on_pixels_of_one_and_of_four_samples() {
+    let texel = |i: u32| [i * 37 % 251, i * 91 % 256, i % 16 * 16, 64 + i % 192].map(|v| v as f32 / 255.0);
+    let texture = Texture::new(48, 20, Texels::Rgba32F((0..48 * 20).map(texel).collect())).unwrap();
+    let (texture, depths) = (texture.with_mipmaps(), depths_of_a_mesh());
+    let mesh = Mesh::random(12, 150);
+    let states = [
+        State::default(),
+        State { depth_test: Compare::GreaterEqual, blend: Some(Blend::ADD), ..State::default() },
+        State {
+            depth_write: false,
+            scissor: Some(Rect { x: 9, y: 21, width: 99, height: 60 }),
+            ..State::default()
+        },
+    ];
+    for (k, state) in
+        states.into_iter().flat_map(|s| [false, true].map(|m| State { multisample: m, ..s })).enumerate()
+    {
+        for (n, shading) in fixed_shadings(&texture, &depths).into_iter().enumerate() {
+            let (plain, counters) = draw(&mut ScanlineRasterizer, [150, 94], &mesh, &state, &shading);
+            for (threads, level) in [(1, SimdLevel::new()), (2, SimdLevel::new()), (1, SimdLevel::baseline())]
+            {
+                let (fast, c) = draw(&mut tiled(threads, level), [150, 94], &mesh, &state, &shading);
+                assert!(bits(&plain) == bits(&fast), "state {k}, shading {n}, {threads} threads, {level:?}");
+                assert_eq!(counters.passed, c.passed, "state {k}, shading {n}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pixels_of_four_samples_have_the_colour_of_their_middle() {
+    // A ramp of depths as wide as the target: light where the reference is nearer.
+    let mut ramp = BlockDepths::new(8, 8, 0.0).unwrap();
+    let corner = |x: f32, y: f32, z: f32| Vec4::new(x, y, z, 1.0);
+    let square = Mesh {
+        positions: vec![corner(-1., -1., 0.), corner(1., -1., 1.), corner(1., 1., 1.), corner(-1., 1., 0.)],
+        varyings: [[0., 1., 0.1, 1.], [1., 1., 0.1, 1.], [1., 0., 0.1, 1.], [0., 0., 0.1, 1.]].concat(),
+        indices: vec![0, 1, 2, 0, 2, 3],
+    };
+    let state = State { depth_test: Compare::Always, ..State::default() };
+    TiledRasterizer::default().draw_depths(&mut ramp, &[(square.primitives(), state)]);
+    let shadow = ShadowUnit {
+        depths: &ramp,
+        coords: 0,
+        compare: Compare::Less,
+        filter: Filter::Nearest,
+        dims_colors: true,
+        dims_alpha: false,
+    };
+    let color = ColorSource::Constant([1.0; 4]);
+    let shading = Shading::Fixed { color, texture: None, shadow: Some(shadow), alpha_test: None };
+    for (multisample, expected) in [
+        // The depth of column 0 is 1/16, that of column 1 is 3/16.
+        (false, [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+        // The middle of columns 0 and 1 is where column 1 begins.
+        (true, [1.0; 8]),
+    ] {
+        let state = State { multisample, ..State::default() };
+        let (buffers, _) = draw(&mut TiledRasterizer::default(), [8, 8], &square, &state, &shading);
+        let row: Vec<f32> = (0..8).map(|x| buffers.color.pixel(x, 3)[0]).collect();
+        assert_eq!(row, expected, "{multisample}");
+    }
+    // A colour that changes from column to column and a test none fails: samples of a pixel have one colour.
+    let alpha_test = Some(AlphaTest { compare: Compare::GreaterEqual, reference: 0.0 });
+    let shading =
+        Shading::Fixed { color: ColorSource::Rgba { first: 0 }, texture: None, shadow: None, alpha_test };
+    let state = State { multisample: true, ..State::default() };
+    let (buffers, _) = draw(&mut TiledRasterizer::default(), [8, 8], &square, &state, &shading);
+    for x in 0..8 {
+        assert!((buffers.color.pixel(x, 5)[0] - (x / 2 * 2 + 1) as f32 / 8.0).abs() < 1e-6);
     }
 }

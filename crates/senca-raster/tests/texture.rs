@@ -213,7 +213,12 @@ fn both_rasterizers_read_srgb_to_the_bit() {
     for sampler in [Sampler::NEAREST, Sampler::BILINEAR, Sampler::TRILINEAR] {
         let picture = |rasterizer: &mut dyn Rasterizer, texture: &Texture| {
             let unit = TextureUnit { texture, sampler, coords: 3 };
-            let shading = Shading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: Some(unit) };
+            let shading = Shading::Fixed {
+                color: ColorSource::Rgb { first: 0 },
+                texture: Some(unit),
+                shadow: None,
+                alpha_test: None,
+            };
             let mut buffers = Buffers::new(90, 70);
             rasterizer.draw(&mut buffers.target().unwrap(), &primitives, &State::default(), &shading);
             buffers.color
@@ -255,8 +260,12 @@ fn both_rasterizers_read_textures_alike() {
                         let sampler =
                             Sampler { magnify, minify, mip, grid, ..Sampler::default() }.wrapped(wrap);
                         let unit = TextureUnit { texture: &texture, sampler, coords: 3 };
-                        let shading =
-                            Shading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: Some(unit) };
+                        let shading = Shading::Fixed {
+                            color: ColorSource::Rgb { first: 0 },
+                            texture: Some(unit),
+                            shadow: None,
+                            alpha_test: None,
+                        };
                         let picture = |rasterizer: &mut dyn Rasterizer| {
                             let mut buffers = Buffers::new(90, 70);
                             rasterizer.draw(&mut buffers.target().unwrap(), &primitives, &state, &shading);

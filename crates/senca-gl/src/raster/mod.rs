@@ -12,7 +12,7 @@ use senca_raster::{
     Clear, Compare, Counters, Cull, DepthBias, Draw, Ids, LineStipple, Primitives, Rasterizer, Rect, Shading,
     SimdLevel, State, StippleJoins, StrokeRule, Target, TiledRasterizer, Viewport,
 };
-use shading::{SimpleShading, constant_color, simple_shading, simple_texture};
+use shading::{SimpleShading, SimpleUnits, constant_color, simple_shading};
 
 /// A step of depth that is never lost: two of the smallest of 24 bits.
 const DEPTH_UNIT: f32 = 1.0 / (1 << 23) as f32;
@@ -240,15 +240,15 @@ impl<'a> Ready<'a> {
         };
         let lifted = lifted(batch, state.depth_bias.constant);
         let sized = with_sizes(batch, usize::from(batch.layout.stride));
-        let texture = simple_texture(batch).map(|texture| texture.of_samples(side));
-        let work = match simple_shading(s, batch.kind, target, texture, constant_color(batch)) {
+        state.multisample = side > 1;
+        let units = SimpleUnits::new(batch, side);
+        let work = match simple_shading(s, batch.kind, target, units, constant_color(batch)) {
             Some(simple) => {
                 (state.blend, state.stencil) = (simple.blend, simple.stencil);
                 Work::Simple(simple)
             }
             None => {
                 let buffers = [target.has_depth(), target.has_stencil()];
-                state.multisample = side > 1;
                 let program = Program::new(s, batch.kind, &batch.layout, level, buffers);
                 Work::Program(Box::new(program.with_samples(side > 1)))
             }

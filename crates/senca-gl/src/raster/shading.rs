@@ -1,14 +1,14 @@
-//! What the rasterizer can do by itself, which is the fastest: one colour per vertex, perhaps times a
-//! texture, blended in the usual ways, or depth alone.
+//! What the rasterizer can do by itself, which is the fastest: one colour per vertex, perhaps in the light of a shadow
+//! map, perhaps times a texture, blended in the usual ways, or depth alone.
 
 use crate::fragment::{MAX_LOD_BIAS, View};
-use crate::raster_state::{Batch, Kind, RasterState};
+use crate::raster_state::{Batch, Kind, RasterState, UnitState};
 use crate::state::{Cap, ColorBuffer, StencilBuffer, TexTarget};
 use crate::texture::{BaseFormat, TexImage, TexParams, Texels};
 use crate::{Enum, gl};
 use senca_raster::{
-    Blend, ColorSource, Factor, Filter, Mip, Sampler, Shading, SharedTexels, StencilOp, StencilTest, Target,
-    Texture, TextureLevel, TextureUnit, Wrap,
+    AlphaTest, Blend, ColorSource, Compare, Factor, Filter, Mip, Sampler, Shading, ShadowUnit, SharedTexels,
+    StencilOp, StencilTest, Target, Texture, TextureLevel, TextureUnit, Wrap,
 };
 use std::sync::Arc;
 
@@ -34,10 +34,109 @@ impl AsRef<[[u8; 4]]> for Colors {
     }
 }
 
-/// The texture of a batch, if the rasterizer can read it by itself: one of two dimensions and 8 bits,
+/// A shadow map that dims colours.
+#[derive(Debug)]
+struct SimpleShadow {
+    /// Depths kept in blocks.
+    depths: Arc<Texels>,
+    coords: usize,
+    compare: Compare,
+    filter: Filter,
+    dims_colors: bool,
+    dims_alpha: bool,
+}
+
+/// What units of texture do, if the rasterizer can do it by itself.
+#[derive(Debug, Default)]
+pub(super) struct SimpleUnits {
+    texture: Option<SimpleTexture>,
+    shadow: Option<SimpleShadow>,
+}
+
+impl SimpleUnits {
+    /// Of a batch whose target has squares of `side` samples along each side of a pixel: a texture, or a shadow map, or
+    /// both. `None` if they are more than that.
+    pub(super) fn new(batch: &Batch, side: u32) -> Option<Self> {
+        let [first, second] = match batch.state.units.as_slice() {
+            [] => return Some(Self::default()),
+            [unit] => [Some(unit), None],
+            [first, second] => [Some(first), Some(second)],
+            _ => return None,
+        };
+        if batch.kind != Kind::Triangles {
+            return None;
+        }
+        let mut units = Self::default();
+        for unit in [first, second].into_iter().flatten() {
+            match simple_shadow(batch, unit) {
+                Some(shadow) if units.shadow.is_none() => units.shadow = Some(shadow),
+                _ if units.texture.is_none() => {
+                    units.texture = Some(simple_texture(batch, unit)?.of_samples(side));
+                }
+                _ => return None,
+            }
+        }
+        // After a shadow the texture would have the last word.
+        let replaces = units.texture.as_ref().is_some_and(|texture| texture.replaces);
+        (units.shadow.is_none() || !replaces).then_some(units)
+    }
+}
+
+/// The shadow map of a unit, if the rasterizer can read it by itself: one that was drawn, modulating.
+fn simple_shadow(batch: &Batch, unit: &UnitState) -> Option<SimpleShadow> {
+    let View { params, levels } = &unit.view;
+    let [images] = levels.as_slice() else { return None };
+    let image = images.first()?;
+    let (Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. }) = &*image.texels else {
+        return None;
+    };
+    let filter = match [params.min_filter, params.mag_filter] {
+        [gl::NEAREST, gl::NEAREST] => Filter::Nearest,
+        [gl::LINEAR, gl::LINEAR] => Filter::Linear,
+        _ => return None,
+    };
+    let fits = unit.target == TexTarget::Two
+        && unit.env.mode == gl::MODULATE
+        && image.border == 0
+        && depths.kept_blocks().is_some()
+        && params.wrap[..2] == [gl::CLAMP_TO_EDGE; 2]
+        && params.compare_mode == gl::COMPARE_R_TO_TEXTURE;
+    fits.then_some(())?;
+    let dims = match params.depth_mode {
+        gl::INTENSITY => [true, true],
+        gl::ALPHA => [false, true],
+        _ => [true, false],
+    };
+    Some(SimpleShadow {
+        depths: Arc::clone(&image.texels),
+        coords: usize::from(batch.layout.tex_coords[unit.unit]?),
+        compare: super::compare(params.compare_func),
+        filter,
+        dims_colors: dims[0],
+        dims_alpha: dims[1],
+    })
+}
+
+impl SimpleShadow {
+    /// In the rasterizer's terms.
+    fn unit(&self) -> Option<ShadowUnit<'_>> {
+        let (Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. }) = &*self.depths else {
+            return None;
+        };
+        Some(ShadowUnit {
+            depths: depths.kept_blocks()?,
+            coords: self.coords,
+            compare: self.compare,
+            filter: self.filter,
+            dims_colors: self.dims_colors,
+            dims_alpha: self.dims_alpha,
+        })
+    }
+}
+
+/// The texture of a unit, if the rasterizer can read it by itself: one of two dimensions and 8 bits,
 /// modulating or replacing, and not projected.
-pub(super) fn simple_texture(batch: &Batch) -> Option<SimpleTexture> {
-    let [unit] = batch.state.units.as_slice() else { return None };
+fn simple_texture(batch: &Batch, unit: &UnitState) -> Option<SimpleTexture> {
     let View { params, levels } = &unit.view;
     let first = levels.first()?.first()?;
     let colored =
@@ -45,7 +144,6 @@ pub(super) fn simple_texture(batch: &Batch) -> Option<SimpleTexture> {
     let opaque = matches!(first.format.base(), BaseFormat::Rgb | BaseFormat::Luminance);
     let replaces = unit.env.mode == gl::REPLACE && !opaque;
     let fits = unit.target == TexTarget::Two
-        && batch.kind == Kind::Triangles
         && colored
         && (replaces || unit.env.mode == gl::MODULATE)
         && first.border == 0
@@ -71,7 +169,7 @@ pub(super) fn simple_texture(batch: &Batch) -> Option<SimpleTexture> {
 impl SimpleTexture {
     /// The same for a target whose pixels are samples, `side` along each side of a pixel: the level of detail is that
     /// of the whole pixel (OpenGL 1.5, section 3.8.8).
-    pub(super) fn of_samples(mut self, side: u32) -> Self {
+    fn of_samples(mut self, side: u32) -> Self {
         self.sampler.lod_bias += side.ilog2() as f32;
         self
     }
@@ -118,7 +216,8 @@ fn sampler(p: &TexParams, env_lod_bias: f32, levels: usize) -> Option<Sampler> {
 pub(super) struct SimpleShading {
     /// `None` if depths are all that counts.
     color: Option<ColorSource>,
-    texture: Option<SimpleTexture>,
+    units: SimpleUnits,
+    alpha_test: Option<AlphaTest>,
     pub(super) blend: Option<Blend>,
     pub(super) stencil: Option<StencilTest>,
 }
@@ -127,10 +226,11 @@ impl SimpleShading {
     /// In the rasterizer's terms.
     pub(super) fn shading(&self) -> Shading<'_> {
         let Some(color) = self.color else { return Shading::None };
-        let texture = self.texture.as_ref();
+        let texture = self.units.texture.as_ref();
         let texture =
             texture.map(|t| TextureUnit { texture: &t.texture, sampler: t.sampler, coords: t.coords });
-        Shading::Fixed { color, texture }
+        let shadow = self.units.shadow.as_ref().and_then(SimpleShadow::unit);
+        Shading::Fixed { color, texture, shadow, alpha_test: self.alpha_test }
     }
 }
 
@@ -147,12 +247,13 @@ pub(super) fn constant_color(batch: &Batch) -> Option<[f32; 4]> {
     batch.varyings.chunks_exact(stride).all(|v| v.starts_with(&color)).then_some(color)
 }
 
-/// The rasterizer's own shading and blending, where the state asks for no more than it can.
+/// The rasterizer's own shading and blending, where the state asks for no more than it can. `units` is what units of
+/// texture do if it can do that.
 pub(super) fn simple_shading(
     s: &RasterState,
     kind: Kind,
     target: &Target<'_>,
-    texture: Option<SimpleTexture>,
+    units: Option<SimpleUnits>,
     constant: Option<[f32; 4]>,
 ) -> Option<SimpleShading> {
     let stencil = s.has(Cap::StencilTest) && target.has_stencil();
@@ -161,26 +262,28 @@ pub(super) fn simple_shading(
         return None;
     }
     let stencil = stencil.then(|| stencil_of(&s.stencil));
-    let alpha_test = s.has(Cap::AlphaTest) && s.color.alpha_func != gl::ALWAYS;
-    if s.color.mask == [false; 4] && !alpha_test {
-        return Some(SimpleShading { color: None, texture: None, blend: None, stencil });
+    let alpha_test = (s.has(Cap::AlphaTest) && s.color.alpha_func != gl::ALWAYS)
+        .then_some(AlphaTest { compare: super::compare(s.color.alpha_func), reference: s.color.alpha_ref });
+    if s.color.mask == [false; 4] && alpha_test.is_none() {
+        let units = SimpleUnits::default();
+        return Some(SimpleShading { color: None, units, alpha_test, blend: None, stencil });
     }
-    let plain = (s.units.is_empty() || texture.is_some())
-        && !s.color_sum
-        && !s.has(Cap::Fog)
-        && !alpha_test
-        && !s.has(Cap::ColorLogicOp)
-        && s.color.mask == [true; 4];
+    // The stencil test comes after that of alpha, and lines are left to the program.
+    if alpha_test.is_some() && (stencil.is_some() || kind != Kind::Triangles) {
+        return None;
+    }
+    let units = units?;
+    let plain = !s.color_sum && !s.has(Cap::Fog) && !s.has(Cap::ColorLogicOp) && s.color.mask == [true; 4];
     if !plain {
         return None;
     }
     let blend = if s.has(Cap::Blend) { Some(blend_of(&s.color)?) } else { None };
     let blend = blend.filter(|b| *b != Blend { source: Factor::One, destination: Factor::Zero });
-    let color = match &texture {
+    let color = match &units.texture {
         Some(texture) if texture.replaces => ColorSource::Constant([1.0; 4]),
         _ => constant.map_or(ColorSource::Rgba { first: 0 }, ColorSource::Constant),
     };
-    Some(SimpleShading { color: Some(color), texture, blend, stencil })
+    Some(SimpleShading { color: Some(color), units, alpha_test, blend, stencil })
 }
 
 fn stencil_of(s: &StencilBuffer) -> StencilTest {
@@ -290,11 +393,11 @@ mod tests {
                         TiledRasterizer::default().draw(&mut target, &p, &State::default(), shading);
                         color
                     };
-                    let texture = simple_texture(&batch).unwrap();
+                    let units = SimpleUnits::new(&batch, 1);
                     let mut none = [[0u8; 4]; 1];
                     let target =
                         Target::new(1, 1).and_then(|t| t.with_color(ColorPlane::Rgba8(&mut none))).unwrap();
-                    let simple = simple_shading(&batch.state, Kind::Triangles, &target, Some(texture), None);
+                    let simple = simple_shading(&batch.state, Kind::Triangles, &target, units, None);
                     let program = Program::new(
                         &batch.state,
                         Kind::Triangles,
@@ -314,9 +417,9 @@ mod tests {
 
     #[test]
     fn projected_textures_and_borders_are_for_the_stage() {
-        assert!(simple_texture(&batch(gl::LINEAR, gl::REPEAT, gl::MODULATE, 2.0)).is_none());
-        assert!(simple_texture(&batch(gl::LINEAR, gl::CLAMP, gl::MODULATE, 1.0)).is_none());
-        assert!(simple_texture(&batch(gl::NEAREST, gl::CLAMP, gl::MODULATE, 1.0)).is_some());
-        assert!(simple_texture(&batch(gl::LINEAR, gl::REPEAT, gl::DECAL, 1.0)).is_none());
+        assert!(SimpleUnits::new(&batch(gl::LINEAR, gl::REPEAT, gl::MODULATE, 2.0), 1).is_none());
+        assert!(SimpleUnits::new(&batch(gl::LINEAR, gl::CLAMP, gl::MODULATE, 1.0), 1).is_none());
+        assert!(SimpleUnits::new(&batch(gl::NEAREST, gl::CLAMP, gl::MODULATE, 1.0), 1).is_some());
+        assert!(SimpleUnits::new(&batch(gl::LINEAR, gl::REPEAT, gl::DECAL, 1.0), 1).is_none());
     }
 }

@@ -38,6 +38,11 @@ impl Depths {
         self.blocks.as_deref().filter(|_| self.rows.get().is_none())
     }
 
+    /// The blocks, whether or not they have been unfolded.
+    pub(crate) fn kept_blocks(&self) -> Option<&BlockDepths> {
+        self.blocks.as_deref()
+    }
+
     /// The blocks to draw to, if depths are kept so.
     pub(crate) fn blocks_mut(&mut self) -> Option<&mut BlockDepths> {
         let blocks = self.blocks.as_deref_mut()?;

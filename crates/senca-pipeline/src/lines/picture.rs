@@ -92,7 +92,12 @@ fn draw_sample(
     };
     let state =
         State { viewport: Some(window.viewport()), line_width: settings.wire.width, ..State::default() };
-    let shading = RasterShading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: None };
+    let shading = RasterShading::Fixed {
+        color: ColorSource::Rgb { first: 0 },
+        texture: None,
+        shadow: None,
+        alpha_test: None,
+    };
     Ok(rasterizer(settings).draw_lines(&mut target.map_err(too_large)?, &primitives, &state, &shading))
 }
 

@@ -20,7 +20,12 @@ pub fn rasterize_gouraud(
     target: &mut Target<'_>,
 ) -> Counters {
     let varyings: Vec<f32> = list.iter().flat_map(|t| &t.vertices).flat_map(|v| v.light.to_array()).collect();
-    let shading = Shading::Fixed { color: ColorSource::Rgb { first: 0 }, texture: None };
+    let shading = Shading::Fixed {
+        color: ColorSource::Rgb { first: 0 },
+        texture: None,
+        shadow: None,
+        alpha_test: None,
+    };
     fill(list, &varyings, rasterizer, target, &shading)
 }
 

@@ -161,9 +161,12 @@ fn squares(
         let unit = |texture| TextureUnit { texture, sampler: Sampler::TRILINEAR, coords: 0 };
         let shading = match &texture {
             None => Shading::vertex_rgb(),
-            Some(texture) => {
-                Shading::Fixed { color: ColorSource::Constant([1.0; 4]), texture: Some(unit(texture)) }
-            }
+            Some(texture) => Shading::Fixed {
+                color: ColorSource::Constant([1.0; 4]),
+                texture: Some(unit(texture)),
+                shadow: None,
+                alpha_test: None,
+            },
         };
         let state = State { depth_test: senca::raster::Compare::Always, ..State::default() };
         draw(&mut *rasterizer, &mut buffers, &primitives, &state, &shading);
