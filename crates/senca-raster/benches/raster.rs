@@ -5,9 +5,9 @@
 use divan::{Bencher, counter::ItemsCount};
 use senca_math::glam::Vec4;
 use senca_raster::{
-    Clear, ColorPlane, ColorSource, Compare, FragmentShader, Fragments, Ids, Primitives, Rasterizer, Sampler,
-    ScanlineRasterizer, Shaded, Shading, SimdLevel, State, Target, Texels, Texture, TextureUnit,
-    TiledRasterizer, TiledSettings, clip,
+    Clear, ColorPlane, ColorSource, Compare, FixedShading, FragmentShader, Fragments, Ids, Primitives,
+    Rasterizer, Sampler, ScanlineRasterizer, Shaded, Shading, SimdLevel, State, Target, Texels, Texture,
+    TextureUnit, TiledRasterizer, TiledSettings, clip,
 };
 
 const SIDE: u32 = 1024;
@@ -123,12 +123,7 @@ fn bin_only(bencher: Bencher<'_, '_>, cells: u32) {
 fn trilinear_of(bencher: Bencher<'_, '_>, cells: u32, rasterizer: &mut dyn Rasterizer, texels: Texels) {
     let texture = Texture::new(256, 256, texels).expect("sides and count fit").with_mipmaps();
     let unit = TextureUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 3 };
-    let shading = Shading::Fixed {
-        color: ColorSource::Rgb { first: 0 },
-        texture: Some(unit),
-        shadow: None,
-        alpha_test: None,
-    };
+    let shading = Shading::Fixed(FixedShading::textured(ColorSource::Rgb { first: 0 }, unit));
     Sheet::new(cells).bench(bencher, rasterizer, &shading, State::default());
 }
 

@@ -10,8 +10,8 @@
 use rayon::prelude::*;
 use senca_math::glam::{Mat4, Vec3, Vec4};
 use senca_raster::{
-    Clear, ColorPlane, ColorSource, Compare, Ids, Primitives, Rasterizer, Sampler, Shading, State, Target,
-    Texels, Texture, TextureUnit, TiledRasterizer, TiledSettings,
+    Clear, ColorPlane, ColorSource, Compare, FixedShading, Ids, Primitives, Rasterizer, Sampler, Shading,
+    State, Target, Texels, Texture, TextureUnit, TiledRasterizer, TiledSettings,
 };
 use std::time::Instant;
 
@@ -304,26 +304,10 @@ impl Workload for Quads {
             self.textured_layers(frame);
             let (texture, sampler) = self.texture.as_ref().expect("checked above");
             let unit = TextureUnit { texture, sampler: *sampler, coords: 0 };
-            (
-                2,
-                Shading::Fixed {
-                    color: ColorSource::Constant([1.0, 1.0, 0.7, 1.0]),
-                    texture: Some(unit),
-                    shadow: None,
-                    alpha_test: None,
-                },
-            )
+            (2, Shading::Fixed(FixedShading::textured(ColorSource::Constant([1.0, 1.0, 0.7, 1.0]), unit)))
         } else {
             self.colored_layers(frame);
-            (
-                4,
-                Shading::Fixed {
-                    color: ColorSource::Rgba { first: 0 },
-                    texture: None,
-                    shadow: None,
-                    alpha_test: None,
-                },
-            )
+            (4, Shading::Fixed(FixedShading::new(ColorSource::Rgba { first: 0 })))
         };
         let primitives = Primitives {
             positions: &self.positions,

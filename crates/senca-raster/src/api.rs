@@ -1,5 +1,6 @@
 //! What goes into a rasterizer and what comes out: primitives, state, shading, counters.
 
+use crate::cube::CubeUnit;
 use crate::shadow::ShadowUnit;
 use crate::stage::FragmentStage;
 use crate::target::{Clear, Target};
@@ -98,7 +99,7 @@ pub struct State {
     /// Pattern lines are broken up by. Default: none.
     pub stipple: Option<LineStipple>,
     /// Whether squares of 2 x 2 pixels of the target are the samples of one pixel: a [`Shading::Stage`],
-    /// and a [`Shading::Fixed`] with a texture, a shadow map or an alpha test on triangles, then colour once
+    /// and a [`Shading::Fixed`] that is more than a colour on triangles, then colour once
     /// per such pixel, at its centre, and merge sample by sample. Viewport, scissor and sizes are those of the
     /// target all the same, and so are footprints in textures. The target's sides must be even. Other
     /// shadings colour every sample. Default: no.
@@ -391,18 +392,8 @@ pub enum Factor {
 pub enum Shading<'a> {
     /// Nowhere: depth and identifiers only; a colour target keeps what it has.
     None,
-    /// A colour, optionally times the light that a shadow map lets through and times a texture. Stays in vector
-    /// registers from end to end.
-    Fixed {
-        /// The colour.
-        color: ColorSource,
-        /// The texture it is multiplied by.
-        texture: Option<TextureUnit<'a>>,
-        /// The shadow map whose light it is seen in.
-        shadow: Option<ShadowUnit<'a>>,
-        /// The test that decides by alpha what is drawn at all.
-        alpha_test: Option<AlphaTest>,
-    },
+    /// The usual kinds. Stay in vector registers from end to end.
+    Fixed(FixedShading<'a>),
     /// Code of the caller's, once per batch of up to [`LANES`] fragments.
     Custom(&'a dyn FragmentShader),
     /// Code of the caller's that does all that happens to fragments and pixels. [`State::blend`] is not
@@ -410,17 +401,65 @@ pub enum Shading<'a> {
     Stage(&'a dyn FragmentStage),
 }
 
+/// A colour, optionally times the light that a shadow map lets through and times a texture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FixedShading<'a> {
+    /// The colour. Default: opaque white.
+    pub color: ColorSource,
+    /// The texture it is multiplied by. Default: none.
+    pub texture: Option<TextureUnit<'a>>,
+    /// The cube of textures it is multiplied by, if there is no texture. Default: none.
+    pub cube: Option<CubeUnit<'a>>,
+    /// The shadow map whose light it is seen in. Default: none.
+    pub shadow: Option<ShadowUnit<'a>>,
+    /// The test that decides by alpha what is drawn at all. Default: none.
+    pub alpha_test: Option<AlphaTest>,
+}
+
+impl<'a> FixedShading<'a> {
+    /// A colour.
+    #[must_use]
+    pub const fn new(color: ColorSource) -> Self {
+        Self { color, texture: None, cube: None, shadow: None, alpha_test: None }
+    }
+
+    /// A colour times a texture.
+    #[must_use]
+    pub const fn textured(color: ColorSource, texture: TextureUnit<'a>) -> Self {
+        Self { texture: Some(texture), ..Self::new(color) }
+    }
+
+    /// Whether there is more than a colour.
+    fn has_more(&self) -> bool {
+        self.texture.is_some() || self.cube.is_some() || self.shadow.is_some() || self.alpha_test.is_some()
+    }
+}
+
 impl Shading<'_> {
     /// One colour, opaque or not.
     #[must_use]
     pub const fn constant(rgba: [f32; 4]) -> Self {
-        Self::Fixed { color: ColorSource::Constant(rgba), texture: None, shadow: None, alpha_test: None }
+        Self::Fixed(FixedShading::new(ColorSource::Constant(rgba)))
+    }
+
+    /// Colour from varyings 0, 1, 2; alpha 1.
+    #[must_use]
+    pub const fn vertex_rgb() -> Self {
+        Self::Fixed(FixedShading::new(ColorSource::Rgb { first: 0 }))
+    }
+
+    /// The colour, if there is nothing else.
+    pub(crate) fn plain_color(&self) -> Option<ColorSource> {
+        match self {
+            Self::Fixed(fixed) if !fixed.has_more() => Some(fixed.color),
+            _ => None,
+        }
     }
 
     /// The alpha test.
     pub(crate) fn alpha_test(&self) -> Option<AlphaTest> {
         match self {
-            Self::Fixed { alpha_test, .. } => *alpha_test,
+            Self::Fixed(fixed) => fixed.alpha_test,
             _ => None,
         }
     }
@@ -428,22 +467,14 @@ impl Shading<'_> {
     /// Whether pixels of several samples are coloured once; see [`State::multisample`].
     pub(crate) fn colors_pixels(&self) -> bool {
         match self {
-            Self::Fixed { texture, shadow, alpha_test, .. } => {
-                texture.is_some() || shadow.is_some() || alpha_test.is_some()
-            }
+            Self::Fixed(fixed) => fixed.has_more(),
             Self::Stage(_) => true,
             Self::None | Self::Custom(_) => false,
         }
     }
-
-    /// Colour from varyings 0, 1, 2; alpha 1.
-    #[must_use]
-    pub const fn vertex_rgb() -> Self {
-        Self::Fixed { color: ColorSource::Rgb { first: 0 }, texture: None, shadow: None, alpha_test: None }
-    }
 }
 
-/// A colour per fragment.
+/// A colour per fragment. Default: opaque white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ColorSource {
     /// The same everywhere: red, green, blue, alpha.
@@ -458,6 +489,12 @@ pub enum ColorSource {
         /// Number of the varying that is red.
         first: usize,
     },
+}
+
+impl Default for ColorSource {
+    fn default() -> Self {
+        Self::Constant([1.0; 4])
+    }
 }
 
 /// A test of alpha, held to [0, 1]. What fails it changes nothing.

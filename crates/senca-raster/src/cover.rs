@@ -9,11 +9,12 @@
 //! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
 
 use crate::api::{
-    AlphaTest, ColorSource, Compare, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State, StencilOp,
-    StencilTest, TextureUnit,
+    AlphaTest, ColorSource, Compare, FixedShading, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State,
+    StencilOp, StencilTest, TextureUnit,
 };
 use crate::batch::{Batch, PlaneLanes};
 use crate::blend::{Rgba, blended, pack, unpack};
+use crate::cube::CubeUnit;
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::shadow::ShadowUnit;
 use crate::stage::{FragmentStage, PixelColors, Pixels, StageNeeds};
@@ -52,6 +53,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) color: ColorPath,
     /// The texture the colour is multiplied by, and the slot of u.
     pub(crate) texture: Option<(&'a TextureUnit<'a>, usize)>,
+    /// The cube it is multiplied by, and the slot of x.
+    pub(crate) cube: Option<(&'a CubeUnit<'a>, usize)>,
     /// The shadow map whose light it is seen in, and the slot of s.
     pub(crate) shadow: Option<(&'a ShadowUnit<'a>, usize)>,
     /// The test of the colours' alpha.
@@ -87,8 +90,9 @@ impl ColorPath {
     pub(crate) fn of(shading: &Shading<'_>, format: ColorFormat) -> Self {
         match (shading, format) {
             (Shading::Custom(_) | Shading::Stage(_), _) => Self::Plain,
-            (Shading::None, _) | (Shading::Fixed { alpha_test: None, .. }, ColorFormat::None) => Self::None,
-            (Shading::Fixed { color, .. }, _) => match *color {
+            (Shading::None, _) => Self::None,
+            (Shading::Fixed(fixed), ColorFormat::None) if fixed.alpha_test.is_none() => Self::None,
+            (Shading::Fixed(fixed), _) => match fixed.color {
                 ColorSource::Constant(rgba) => Self::Constant(rgba),
                 ColorSource::Rgb { .. } => Self::Varying { alpha: false },
                 ColorSource::Rgba { .. } => Self::Varying { alpha: true },
@@ -97,30 +101,36 @@ impl ColorPath {
     }
 }
 
-/// Slots of the coordinates of a shadow map.
-pub(crate) const SHADOW_SLOTS: usize = 4;
-
-/// Varyings to interpolate, in the order of their slots: those of the colour, then u and v, then the coordinates of
-/// the shadow map; all, in their own order, for the caller's code.
+/// Varyings to interpolate, in the order of their slots: those of the colour, then u and v or the direction to a cube's
+/// texel, then the coordinates of the shadow map; all, in their own order, for the caller's code.
 pub(crate) fn slots(shading: &Shading<'_>, path: ColorPath, stride: usize) -> Vec<usize> {
     match (shading, path) {
         (_, ColorPath::Plain) => (0..stride.min(MAX_VARYINGS)).collect(),
-        (
-            Shading::Fixed { color, texture, shadow, .. },
-            ColorPath::Constant(_) | ColorPath::Varying { .. },
-        ) => {
-            let (first, count) = match *color {
-                ColorSource::Constant(_) => (0, 0),
-                ColorSource::Rgb { first } => (first, 3),
-                ColorSource::Rgba { first } => (first, 4),
+        (Shading::Fixed(fixed), ColorPath::Constant(_) | ColorPath::Varying { .. }) => {
+            let of_color = match fixed.color {
+                ColorSource::Constant(_) => None,
+                ColorSource::Rgb { first } => Some((first, 3)),
+                ColorSource::Rgba { first } => Some((first, 4)),
             };
-            let of_color = (0..count).map(|k| first.saturating_add(k));
-            let of_texture = texture.iter().flat_map(|t| [t.coords, t.coords.saturating_add(1)]);
-            let of_shadow = shadow.iter().flat_map(|s| (0..SHADOW_SLOTS).map(|k| s.coords.saturating_add(k)));
-            of_color.chain(of_texture).chain(of_shadow).collect()
+            let ranges = [of_color, of_texture(fixed), of_shadow(fixed)].into_iter().flatten();
+            ranges.flat_map(|(first, count)| (0..count).map(move |k| first.saturating_add(k))).collect()
         }
         _ => Vec::new(),
     }
+}
+
+/// Number of the first coordinate of a texture or a cube, and how many there are.
+pub(crate) fn of_texture(fixed: &FixedShading<'_>) -> Option<(usize, usize)> {
+    match (&fixed.texture, &fixed.cube) {
+        (Some(unit), _) => Some((unit.coords, 2)),
+        (None, Some(unit)) => Some((unit.coords, 3)),
+        (None, None) => None,
+    }
+}
+
+/// The same of a shadow map.
+pub(crate) fn of_shadow(fixed: &FixedShading<'_>) -> Option<(usize, usize)> {
+    fixed.shadow.as_ref().map(|unit| (unit.coords, 4))
 }
 
 /// Fragments counted.

@@ -50,6 +50,7 @@ mod blend;
 mod block_depths;
 pub mod clip;
 mod cover;
+pub mod cube;
 mod depth;
 mod filled;
 mod lines;
@@ -71,11 +72,12 @@ mod tile;
 mod tiled;
 
 pub use api::{
-    AlphaTest, Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FragmentShader, Fragments,
-    Ids, Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded, Shading,
-    State, StencilOp, StencilTest, StippleJoins, StrokeRule, TextureUnit, Viewport,
+    AlphaTest, Blend, ColorSource, Compare, Counters, Cull, DepthBias, Factor, FixedShading, FragmentShader,
+    Fragments, Ids, Interpolation, LANES, LineStipple, MAX_VARYINGS, Primitives, Rasterizer, Rect, Shaded,
+    Shading, State, StencilOp, StencilTest, StippleJoins, StrokeRule, TextureUnit, Viewport,
 };
 pub use block_depths::BlockDepths;
+pub use cube::{CubeTexture, CubeUnit};
 pub use fearless_simd::{self as simd, Level as SimdLevel};
 pub use multisample::SAMPLES;
 pub use scanline::ScanlineRasterizer;

@@ -159,7 +159,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 fn spread<S: Simd>(v: f32x16<S>, pair: usize) -> f32x16<S> {
     let doubled = if pair < 2 { v.zip_low(v) } else { v.zip_high(v) };
     let (left, right) = doubled.split();
-    let row = if pair % 2 == 0 { left } else { right };
+    let row = if pair.is_multiple_of(2) { left } else { right };
     row.combine(row)
 }
 

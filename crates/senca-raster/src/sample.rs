@@ -145,7 +145,7 @@ pub(crate) fn footprint<S: Simd>(
 
 /// Change of a varying per pixel in x (`axis` 1) or y (2).
 #[inline(always)]
-fn change<S: Simd>(
+pub(crate) fn change<S: Simd>(
     simd: S,
     batch: &Batch,
     lane: usize,

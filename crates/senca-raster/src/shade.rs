@@ -1,7 +1,8 @@
 //! Colour of fragments, the plain form: one lane after another.
 
-use crate::api::{ColorSource, Fragments, LANES, Shaded, Shading, TextureUnit};
+use crate::api::{ColorSource, FixedShading, Fragments, LANES, Shaded, Shading, TextureUnit};
 use crate::assemble::TriangleVaryings;
+use crate::cube::CubeUnit;
 use crate::setup::Setup;
 
 /// Varyings at the 16 lanes of a batch whose lane 0 is pixel (`fx`, `fy`) from the reference.
@@ -20,18 +21,18 @@ pub(crate) fn interpolate(
     }
 }
 
-/// Change of varyings `k` and `k + 1`, which are `values` there, per pixel: `[[ux, vx], [uy, vy]]`.
+/// Change of varyings `k`, `k + 1` and so on, which are `values` there, per pixel: `[[ux, vx], [uy, vy]]`.
 ///
 /// With weights `b = B w`, where `B` and `q = 1/w` are linear on the screen, a varying is
 /// `u0 + b1 u1 + b2 u2`; its change along an axis is `(B1' u1 + B2' u2 - (u - u0) q') w`.
-pub(crate) fn derivatives(
+pub(crate) fn derivatives<const N: usize>(
     setup: &Setup,
     varyings: &TriangleVaryings,
     k: usize,
     w: f32,
-    values: [f32; 2],
-) -> [[f32; 2]; 2] {
-    let terms = [varyings.terms[k], varyings.terms[k + 1]];
+    values: [f32; N],
+) -> [[f32; N]; 2] {
+    let terms: [[f32; 3]; N] = std::array::from_fn(|n| varyings.terms[k + n]);
     if setup.affine {
         return [terms.map(|t| t[1]), terms.map(|t| t[2])];
     }
@@ -40,7 +41,10 @@ pub(crate) fn derivatives(
         let [u0, u1, u2] = terms[k];
         ((b1 * u1 + b2 * u2) - (values[k] - u0) * q) * w
     };
-    [[0, 1].map(|k| change(k, b1.dx, b2.dx, q.dx)), [0, 1].map(|k| change(k, b1.dy, b2.dy, q.dy))]
+    [
+        std::array::from_fn(|k| change(k, b1.dx, b2.dx, q.dx)),
+        std::array::from_fn(|k| change(k, b1.dy, b2.dy, q.dy)),
+    ]
 }
 
 /// Fills `out` for the lanes of `fragments`.
@@ -55,7 +59,7 @@ pub(crate) fn shade_plain(
     match shading {
         Shading::None | Shading::Stage(_) => {}
         Shading::Custom(shader) => shader.shade(fragments, out),
-        Shading::Fixed { color, texture, shadow, alpha_test } => {
+        Shading::Fixed(FixedShading { color, texture, cube, shadow, alpha_test }) => {
             for lane in fragments.lanes() {
                 let mut rgba = color_of(color, fragments.varyings, lane);
                 if let Some(unit) = shadow {
@@ -66,6 +70,10 @@ pub(crate) fn shade_plain(
                 if let Some(unit) = texture {
                     let at = place_of(fragments.columns as usize, origin_to_lane0, lane);
                     let texel = texture_at(unit, setup, varyings, at);
+                    rgba = std::array::from_fn(|k| rgba[k] * texel[k]);
+                } else if let Some(unit) = cube {
+                    let at = place_of(fragments.columns as usize, origin_to_lane0, lane);
+                    let texel = cube_at(unit, setup, varyings, at);
                     rgba = std::array::from_fn(|k| rgba[k] * texel[k]);
                 }
                 out.set(lane, rgba);
@@ -86,16 +94,26 @@ pub(crate) fn place_of(columns: usize, [x, y]: [f32; 2], lane: usize) -> [f32; 2
 /// Colour of a fragment with these varyings, which do not change from pixel to pixel.
 #[inline(always)]
 pub(crate) fn color_of_values(shading: &Shading<'_>, values: &[f32]) -> [f32; 4] {
-    let Shading::Fixed { color, texture, shadow, .. } = shading else { return [0.0, 0.0, 0.0, 1.0] };
+    let Shading::Fixed(FixedShading { color, texture, cube, shadow, .. }) = shading else {
+        return [0.0, 0.0, 0.0, 1.0];
+    };
     let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
     let mut rgba = source_color(color, values);
     if let Some(unit) = shadow {
         let coords = [0, 1, 2, 3].map(|k| at(unit.coords.saturating_add(k)));
         rgba = unit.dimmed(rgba, unit.light(coords));
     }
-    let Some(unit) = texture else { return rgba };
-    let uv = [at(unit.coords), at(unit.coords.saturating_add(1))];
-    let texel = unit.sampler.sample(unit.texture, uv, [[0.0; 2]; 2]);
+    let texel = match (texture, cube) {
+        (Some(unit), _) => {
+            let uv = [at(unit.coords), at(unit.coords.saturating_add(1))];
+            unit.sampler.sample(unit.texture, uv, [[0.0; 2]; 2])
+        }
+        (None, Some(unit)) => {
+            let direction = [0, 1, 2].map(|k| at(unit.coords.saturating_add(k)));
+            unit.sample(direction, [[0.0; 3]; 2])
+        }
+        (None, None) => return rgba,
+    };
     std::array::from_fn(|k| rgba[k] * texel[k])
 }
 
@@ -119,6 +137,13 @@ fn color_of(color: &ColorSource, varyings: &[[f32; LANES]], lane: usize) -> [f32
         ColorSource::Rgb { first: f } => [at(f, 0), at(f, 1), at(f, 2), 1.0],
         ColorSource::Rgba { first: f } => [at(f, 0), at(f, 1), at(f, 2), at(f, 3)],
     }
+}
+
+fn cube_at(unit: &CubeUnit<'_>, setup: &Setup, varyings: &TriangleVaryings, [fx, fy]: [f32; 2]) -> [f32; 4] {
+    let k = unit.coords.min(crate::api::MAX_VARYINGS - 3);
+    let weights = setup.weights(fx, fy);
+    let direction = [k, k + 1, k + 2].map(|k| varyings.at(k, setup.affine, [fx, fy], weights));
+    unit.sample(direction, derivatives(setup, varyings, k, weights[2], direction))
 }
 
 fn texture_at(

@@ -126,9 +126,7 @@ impl<'a, 't> Sink<'a, 't> {
 
     /// The planes, where fragments go in plain colours, unblended, to 8 bits.
     pub(crate) fn plain(&mut self) -> Option<Plain<'_>> {
-        let Shading::Fixed { color, texture: None, shadow: None, alpha_test: None } = self.shading else {
-            return None;
-        };
+        let color = self.shading.plain_color()?;
         let stencil = self.state.stencil.is_some() && self.target.stencil.is_some();
         let simple = self.state.blend.is_none() && self.target.ids.is_none() && !stencil;
         let width = self.target.width as usize;
@@ -142,7 +140,7 @@ impl<'a, 't> Sink<'a, 't> {
             depth: self.target.depth.as_deref_mut().filter(|_| looks),
             width,
             first_row: self.first_row as usize,
-            color: *color,
+            color,
             counters: &mut self.counters,
         })
     }
@@ -266,7 +264,7 @@ impl<'a, 't> Sink<'a, 't> {
                 shader.shade(&fragments, &mut shaded);
                 self.write(&fragments, &shaded);
             }
-            Shading::None | Shading::Fixed { .. } => {}
+            Shading::None | Shading::Fixed(_) => {}
         }
     }
 

@@ -421,20 +421,28 @@ impl Sampler {
     /// Colour at `uv` with the level of detail given.
     #[must_use]
     pub fn sample_lod(&self, texture: &Texture, uv: [f32; 2], lod: f32) -> [f32; 4] {
-        let last = texture.levels.len() - 1;
         if lod <= 0.0 || lod.is_nan() {
             return self.read(&texture.levels[0], uv, self.magnify);
         }
-        let lod = lod.min(last as f32);
+        let last = texture.levels.len() - 1;
+        let (level, share) = self.levels_at(lod, texture.levels.len());
+        let fine = self.read(&texture.levels[level], uv, self.minify);
+        if self.mip != Mip::Linear {
+            return fine;
+        }
+        lerp(fine, self.read(&texture.levels[(level + 1).min(last)], uv, self.minify), share)
+    }
+
+    /// The level, or the finer of two, of `count`, and the share of the one after it.
+    pub(crate) fn levels_at(&self, lod: f32, count: usize) -> (usize, f32) {
+        if lod <= 0.0 || lod.is_nan() {
+            return (0, 0.0);
+        }
+        let lod = lod.min((count - 1) as f32);
         match self.mip {
-            Mip::None => self.read(&texture.levels[0], uv, self.minify),
-            Mip::Nearest => self.read(&texture.levels[((lod + 0.5) as usize).min(last)], uv, self.minify),
-            Mip::Linear => {
-                let level = lod as usize;
-                let fine = self.read(&texture.levels[level], uv, self.minify);
-                let coarse = self.read(&texture.levels[(level + 1).min(last)], uv, self.minify);
-                lerp(fine, coarse, lod - level as f32)
-            }
+            Mip::None => (0, 0.0),
+            Mip::Nearest => (((lod + 0.5) as usize).min(count - 1), 0.0),
+            Mip::Linear => (lod as usize, lod - (lod as usize) as f32),
         }
     }
 

@@ -24,12 +24,13 @@
 use crate::api::{LANES, MAX_VARYINGS, TextureUnit};
 use crate::blend::{Rgba, byte, channel};
 use crate::cover::{At, ColorPath, Place, TileDraw, colors, compare, lanes_from, splat4, varying};
+use crate::cube::{CubeTaps, CubeUnit, on_cube};
 use crate::pixels;
 use crate::sample::{
-    FARTHEST_TAME, Quads, footprint, gather_words, load4, lod_of, low, nearest_index, pair_texels, quads,
-    sample, sums, taps,
+    FARTHEST_TAME, Quads, change, footprint, gather_words, load4, lod_of, low, nearest_index, pair_texels,
+    quads, sample, sums, taps,
 };
-use crate::texture::{Filter, Mip, Texture, TextureLevel};
+use crate::texture::{Filter, Mip, Sampler, TextureLevel};
 use crate::tile::BLOCKS;
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
@@ -101,10 +102,37 @@ impl TextureQueue {
     }
 }
 
+/// What texels are read of, through the stages.
+#[derive(Clone, Copy)]
+enum Unit<'a> {
+    Flat(&'a TextureUnit<'a>),
+    Cube(&'a CubeUnit<'a>),
+}
+
+impl Unit<'_> {
+    #[inline(always)]
+    fn sampler(&self) -> &Sampler {
+        match self {
+            Self::Flat(unit) => &unit.sampler,
+            Self::Cube(unit) => &unit.sampler,
+        }
+    }
+
+    #[inline(always)]
+    fn level_count(&self) -> usize {
+        match self {
+            Self::Flat(unit) => unit.texture.levels.len(),
+            Self::Cube(unit) => unit.texture.level_count(),
+        }
+    }
+}
+
 /// What a vector wants of its texture.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lookup {
     uv: [[f32; LANES]; 2],
+    /// Of a cube.
+    face: [i32; LANES],
     /// Whether all coordinates are within [`FARTHEST_TAME`] of 0.
     tame: bool,
     /// Square of the longer side of a pixel, in texels of level 0.
@@ -231,6 +259,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 self.queue.note(&vector, self.pass.per_pixel, false);
             }
         }
+        if let Some((unit, slot)) = self.pass.cube {
+            return self.shade_levels(simd, Unit::Cube(unit), slot, count);
+        }
         let Some((unit, slot)) = self.pass.texture else {
             for k in 0..count {
                 let vector = self.queue.waiting[k];
@@ -251,11 +282,21 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         if !has_levels(unit) {
             return self.shade_one_level(simd, unit, slot, count);
         }
+        self.shade_levels(simd, Unit::Flat(unit), slot, count);
+    }
+
+    /// Vectors that read levels by their level of detail.
+    #[inline(always)]
+    fn shade_levels<S: Simd>(&mut self, simd: S, unit: Unit<'_>, slot: usize, count: usize) {
         for k in 0..count {
-            self.look(simd, unit, slot, k);
+            match unit {
+                Unit::Flat(unit) => self.look(simd, unit, slot, k),
+                Unit::Cube(unit) => self.look_around(simd, unit, slot, k),
+            }
         }
+        let last = if unit.sampler().mip == Mip::None { 0 } else { unit.level_count() - 1 };
         for k in 0..count {
-            self.queue.lookups[k].find_levels(simd, unit, self.queue.waiting[k].bits);
+            self.queue.lookups[k].find_levels(simd, unit.sampler(), last, self.queue.waiting[k].bits);
         }
         let mut staged = 0;
         for k in 0..count {
@@ -448,6 +489,42 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         uv[1].store_array(&mut lookup.uv[1]);
     }
 
+    /// The same of a cube.
+    #[inline(always)]
+    fn look_around<S: Simd>(&mut self, simd: S, unit: &CubeUnit<'_>, slot: usize, k: usize) {
+        let vector = self.queue.waiting[k];
+        let lane = vector.place.lane;
+        let at = self.at_vector(simd, &vector);
+        self.keep_color(simd, &at, k);
+        let batch = &*self.batch;
+        let [x, y, z] = [
+            &batch.varyings[slot % MAX_VARYINGS],
+            &batch.varyings[(slot + 1) % MAX_VARYINGS],
+            &batch.varyings[(slot + 2) % MAX_VARYINGS],
+        ];
+        let direction =
+            [varying(simd, x, lane, &at), varying(simd, y, lane, &at), varying(simd, z, lane, &at)];
+        let [dx, dy, dz] = direction;
+        let changes = [
+            [
+                change(simd, batch, lane, &at, x, dx, 1),
+                change(simd, batch, lane, &at, y, dy, 1),
+                change(simd, batch, lane, &at, z, dz, 1),
+            ],
+            [
+                change(simd, batch, lane, &at, x, dx, 2),
+                change(simd, batch, lane, &at, y, dy, 2),
+                change(simd, batch, lane, &at, z, dz, 2),
+            ],
+        ];
+        let on = on_cube(simd, unit.texture.size(), direction, changes);
+        let lookup = &mut self.queue.lookups[k];
+        on.footprint.store_array(&mut lookup.footprint);
+        on.face.store_array(&mut lookup.face);
+        on.st[0].store_array(&mut lookup.uv[0]);
+        on.st[1].store_array(&mut lookup.uv[1]);
+    }
+
     /// A vector whose texture is read at once.
     #[inline(always)]
     fn shade_one<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, slot: usize, vector: Waiting) {
@@ -534,12 +611,11 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 impl Lookup {
     /// Number of the finer level, and share of the one after it; see [`crate::Sampler::sample_lod`].
     #[inline(always)]
-    fn find_levels<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, bits: u16) {
-        let (sampler, texture) = (&unit.sampler, unit.texture);
+    fn find_levels<S: Simd>(&mut self, simd: S, sampler: &Sampler, last: usize, bits: u16) {
         let (zero, half) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 0.5));
         let lod = lod_of(simd, sampler, f32x16::load_array_ref(simd, &self.footprint));
         let minified = lod.simd_gt(zero) & mask32x16::from_bitmask(simd, u64::from(bits));
-        let last = f32x16::splat(simd, (texture.levels.len() - 1) as f32);
+        let last = f32x16::splat(simd, last as f32);
         let lod = minified.select(lod.min(last), zero);
         let (mut level, mut share) = (lod.floor(), zero);
         if sampler.mip == Mip::Nearest {
@@ -555,16 +631,25 @@ impl Lookup {
 impl Job {
     /// Fills in where the texels are.
     #[inline(always)]
-    fn address<S: Simd>(&mut self, simd: S, unit: &TextureUnit<'_>, lookup: &Lookup) {
+    fn address<S: Simd>(&mut self, simd: S, unit: Unit<'_>, lookup: &Lookup) {
         let bits = mask32x16::from_bitmask(simd, u64::from(self.bits));
         let share = i32x16::load_array_ref(simd, &lookup.share);
         self.two_levels = (share.simd_gt(i32x16::splat(simd, 0)) & bits).any_true();
         let [u, v] = &lookup.uv;
         let uv = [f32x16::load_array_ref(simd, u), f32x16::load_array_ref(simd, v)];
-        let [fine, coarse] = levels_from(unit.texture, self.level);
-        self.taps[0].address(simd, unit, fine, uv, lookup.tame);
-        if self.two_levels {
-            self.taps[1].address(simd, unit, coarse, uv, lookup.tame);
+        let count = if self.two_levels { 2 } else { 1 };
+        for (k, taps) in self.taps.iter_mut().enumerate().take(count) {
+            match unit {
+                Unit::Flat(unit) => {
+                    let levels = &unit.texture.levels;
+                    let level = &levels[(self.level + k).min(levels.len() - 1)];
+                    taps.address(simd, unit, level, uv, lookup.tame);
+                }
+                Unit::Cube(unit) => {
+                    let face = i32x16::load_array_ref(simd, &lookup.face);
+                    taps.address_on_cube(&unit.texture.taps(simd, self.level + k, face, uv));
+                }
+            }
         }
     }
 }
@@ -578,13 +663,6 @@ fn tinted<S: Simd>(simd: S, packed: u32x16<S>, k: usize, by: f32, texels: &impl 
     let shift = 8 * k as u32;
     let tinted = byte(simd, f32x16::splat(simd, by) * texels.number(simd, k)) << shift;
     (packed & u32x16::splat(simd, !(255 << shift))) | tinted
-}
-
-/// Level `number` and the one after it.
-#[inline(always)]
-fn levels_from(texture: &Texture, number: usize) -> [&TextureLevel; 2] {
-    let last = texture.levels.len() - 1;
-    [&texture.levels[number.min(last)], &texture.levels[(number + 1).min(last)]]
 }
 
 impl TapLanes {
@@ -613,6 +691,15 @@ impl TapLanes {
         let [s, t] = taps.between(simd);
         s.store_array(&mut self.between[0]);
         t.store_array(&mut self.between[1]);
+    }
+
+    #[inline(always)]
+    fn address_on_cube<S: Simd>(&mut self, taps: &CubeTaps<S>) {
+        taps.left[0].store_array(&mut self.left[0]);
+        taps.left[1].store_array(&mut self.left[1]);
+        taps.between[0].store_array(&mut self.between[0]);
+        taps.between[1].store_array(&mut self.between[1]);
+        self.apart = 0;
     }
 
     #[inline(always)]

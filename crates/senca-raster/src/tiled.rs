@@ -7,7 +7,7 @@ use crate::assemble::{varyings_of, vertex_count};
 use crate::batch::Batch;
 use crate::bin::{BinInput, RUN, Reference, Run, TILE, run_length};
 use crate::block_depths::BlockDepths;
-use crate::cover::{ColorPath, FragmentCounts, Pass, SHADOW_SLOTS, TileDraw, slots};
+use crate::cover::{ColorPath, FragmentCounts, Pass, TileDraw, of_shadow, of_texture, slots};
 use crate::filled::is_color_only;
 use crate::pixel::{clear_bounds, clear_in_scissor};
 use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
@@ -334,18 +334,21 @@ fn pass<'a>(
     let drops =
         if stage.is_some() { needs.discards } else { custom || stencil.is_some() || alpha_test.is_some() };
     let slots = slots(shading, color, triangles.stride);
-    let (texture, shadow) = match shading {
-        Shading::Fixed { texture, shadow, .. } if color != ColorPath::None => {
-            let of_shadow = slots.len() - if shadow.is_some() { SHADOW_SLOTS } else { 0 };
-            (
-                texture.as_ref().map(|unit| (unit, of_shadow - 2)),
-                shadow.as_ref().map(|unit| (unit, of_shadow)),
-            )
-        }
-        _ => (None, None),
+    let fixed = match shading {
+        Shading::Fixed(fixed) if color != ColorPath::None => Some(fixed),
+        _ => None,
     };
-    let waits = texture.is_some() || shadow.is_some() || alpha_test.is_some();
-    let texels = texture.map(|(unit, _)| unit.texture.levels.iter().filter_map(|l| l.texels.rgba8()));
+    // They come after the colour, the shadow map last.
+    let second = slots.len() - fixed.and_then(of_shadow).map_or(0, |(_, count)| count);
+    let first = second - fixed.and_then(of_texture).map_or(0, |(_, count)| count);
+    let texture = fixed.and_then(|fixed| fixed.texture.as_ref()).map(|unit| (unit, first));
+    let cube = fixed.and_then(|fixed| fixed.cube.as_ref()).filter(|_| texture.is_none());
+    let cube = cube.map(|unit| (unit, first));
+    let shadow = fixed.and_then(|fixed| fixed.shadow.as_ref()).map(|unit| (unit, second));
+    let waits = shading.colors_pixels() && fixed.is_some();
+    let of_texture = texture.map(|(unit, _)| unit.texture.levels.iter().filter_map(|l| l.texels.rgba8()));
+    let of_cube = cube.map(|(unit, _)| unit.texture.texels());
+    let texels = of_texture.into_iter().flatten().chain(of_cube.into_iter().flatten());
     let mut pass = Pass {
         map,
         state,
@@ -381,12 +384,13 @@ fn pass<'a>(
             && target.ids.is_none(),
         color,
         texture,
+        cube,
         shadow,
         alpha_test,
         waits,
         waits_only: waits && !reads_depth && stencil.is_none() && target.ids.is_none(),
         per_pixel: waits && state.multisample,
-        texels: texels.into_iter().flatten().collect(),
+        texels: texels.collect(),
         slots,
         color_only: false,
     };

@@ -2,10 +2,10 @@
 
 use senca_math::glam::Vec4;
 use senca_raster::{
-    AlphaTest, Blend, BlockDepths, Buffers, Clear, ColorPlane, ColorSource, Compare, Counters, Cull,
-    DepthBias, Filter, FragmentShader, Fragments, Ids, Interpolation, Primitives, Rasterizer, Rect, Sampler,
-    ScanlineRasterizer, Shaded, Shading, ShadowUnit, SimdLevel, State, Target, Texels, Texture, TextureUnit,
-    TiledRasterizer, TiledSettings, Viewport,
+    AlphaTest, Blend, BlockDepths, Buffers, Clear, ColorPlane, ColorSource, Compare, Counters, CubeTexture,
+    CubeUnit, Cull, DepthBias, Filter, FixedShading, FragmentShader, Fragments, Ids, Interpolation, Mip,
+    Primitives, Rasterizer, Rect, Sampler, ScanlineRasterizer, Shaded, Shading, ShadowUnit, SimdLevel, State,
+    Target, Texels, Texture, TextureUnit, TiledRasterizer, TiledSettings, Viewport,
 };
 
 /// Numbers in [0, 1), the same in every run.
@@ -128,12 +128,7 @@ fn states() -> Vec<State> {
 
 #[test]
 fn both_rasterizers_draw_the_same_at_every_size() {
-    let shading = Shading::Fixed {
-        color: senca_raster::ColorSource::Rgba { first: 0 },
-        texture: None,
-        shadow: None,
-        alpha_test: None,
-    };
+    let shading = Shading::Fixed(FixedShading::new(senca_raster::ColorSource::Rgba { first: 0 }));
     for (k, size) in SIZES.into_iter().enumerate() {
         let mesh = Mesh::random(k as u64 + 1, 120);
         for (s, state) in states().into_iter().enumerate() {
@@ -152,12 +147,7 @@ fn both_rasterizers_draw_the_same_at_every_size() {
 #[test]
 fn levels_and_threads_do_not_change_a_byte() {
     let mesh = Mesh::random(99, 9000);
-    let shading = Shading::Fixed {
-        color: senca_raster::ColorSource::Rgba { first: 0 },
-        texture: None,
-        shadow: None,
-        alpha_test: None,
-    };
+    let shading = Shading::Fixed(FixedShading::new(senca_raster::ColorSource::Rgba { first: 0 }));
     let (reference, counters) =
         draw(&mut tiled(1, SimdLevel::baseline()), [301, 190], &mesh, &State::default(), &shading);
     for level in levels() {
@@ -199,7 +189,7 @@ fn textured_triangles_of_all_sizes_agree() {
         let texture = Texture::new(48, 20, texels).unwrap().with_mipmaps();
         let unit = TextureUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 2 };
         for color in [ColorSource::Constant([1.0, 0.5, 0.25, 0.5]), ColorSource::Rgba { first: 0 }] {
-            let shading = Shading::Fixed { color, texture: Some(unit), shadow: None, alpha_test: None };
+            let shading = Shading::Fixed(FixedShading::textured(color, unit));
             for state in [State::default(), over] {
                 let (plain, _) = draw(&mut ScanlineRasterizer, [150, 90], &mesh, &state, &shading);
                 let (reference, _) = draw(&mut tiled(1, levels()[0]), [150, 90], &mesh, &state, &shading);
@@ -282,12 +272,7 @@ fn a_part_is_cleared_as_it_is_drawn() {
 #[test]
 fn eight_bit_targets_agree() {
     let mesh = Mesh::random(11, 300);
-    let shading = Shading::Fixed {
-        color: senca_raster::ColorSource::Rgba { first: 0 },
-        texture: None,
-        shadow: None,
-        alpha_test: None,
-    };
+    let shading = Shading::Fixed(FixedShading::new(senca_raster::ColorSource::Rgba { first: 0 }));
     for blend in [None, Some(Blend::OVER), Some(Blend::ADD), Some(Blend::MULTIPLY)] {
         let state = State {
             blend,
@@ -318,7 +303,7 @@ fn whole_blocks_of_colour_agree() {
         ColorSource::Constant([0.9, 1.3, -0.2, 0.4]),
     ];
     for color in shadings {
-        let shading = Shading::Fixed { color, texture: None, shadow: None, alpha_test: None };
+        let shading = Shading::Fixed(FixedShading::new(color));
         for blend in [None, Some(Blend::OVER), Some(Blend::ADD)] {
             let state = State {
                 blend,
@@ -352,12 +337,7 @@ fn textured_bytes_are_rounded_numbers() {
     for sampler in [Sampler::NEAREST, Sampler::BILINEAR, Sampler::TRILINEAR] {
         let unit = TextureUnit { texture: &texture, sampler, coords: 2 };
         for color in [[1.0; 4], [1.0, 0.7, 1.0, 0.3]] {
-            let shading = Shading::Fixed {
-                color: ColorSource::Constant(color),
-                texture: Some(unit),
-                shadow: None,
-                alpha_test: None,
-            };
+            let shading = Shading::Fixed(FixedShading::textured(ColorSource::Constant(color), unit));
             let mut numbers = vec![[0f32; 4]; 150 * 90];
             let mut bytes = vec![[0u8; 4]; 150 * 90];
             for plane in [ColorPlane::Rgba32F(&mut numbers), ColorPlane::Rgba8(&mut bytes)] {
@@ -498,7 +478,9 @@ fn fixed_shadings<'a>(texture: &'a Texture, depths: &'a BlockDepths) -> Vec<Shad
     let mut shadings = Vec::new();
     for color in [ColorSource::Constant([1.0, 0.5, 0.75, 0.5]), ColorSource::Rgba { first: 0 }] {
         for (texture, shadow) in [None, Some(unit)].into_iter().flat_map(|t| shadows.map(|s| (t, s))) {
-            shadings.extend(tests.map(|alpha_test| Shading::Fixed { color, texture, shadow, alpha_test }));
+            shadings.extend(tests.map(|alpha_test| {
+                Shading::Fixed(FixedShading { color, texture, shadow, alpha_test, ..FixedShading::default() })
+            }));
         }
     }
     shadings
@@ -555,7 +537,7 @@ fn pixels_of_four_samples_have_the_colour_of_their_middle() {
         dims_alpha: false,
     };
     let color = ColorSource::Constant([1.0; 4]);
-    let shading = Shading::Fixed { color, texture: None, shadow: Some(shadow), alpha_test: None };
+    let shading = Shading::Fixed(FixedShading { color, shadow: Some(shadow), ..FixedShading::default() });
     for (multisample, expected) in [
         // The depth of column 0 is 1/16, that of column 1 is 3/16.
         (false, [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
@@ -569,11 +551,89 @@ fn pixels_of_four_samples_have_the_colour_of_their_middle() {
     }
     // A colour that changes from column to column and a test none fails: samples of a pixel have one colour.
     let alpha_test = Some(AlphaTest { compare: Compare::GreaterEqual, reference: 0.0 });
-    let shading =
-        Shading::Fixed { color: ColorSource::Rgba { first: 0 }, texture: None, shadow: None, alpha_test };
+    let shading = Shading::Fixed(FixedShading {
+        color: ColorSource::Rgba { first: 0 },
+        alpha_test,
+        ..FixedShading::default()
+    });
     let state = State { multisample: true, ..State::default() };
     let (buffers, _) = draw(&mut TiledRasterizer::default(), [8, 8], &square, &state, &shading);
     for x in 0..8 {
         assert!((buffers.color.pixel(x, 5)[0] - (x / 2 * 2 + 1) as f32 / 8.0).abs() < 1e-6);
+    }
+}
+
+/// Faces of 16, 8, 4, 2 and 1 texels along an edge, smooth over all edges: of each level the colour is its direction.
+fn cube() -> CubeTexture {
+    let levels: Vec<(u32, [Vec<[u8; 4]>; 6])> = [16u32, 8, 4, 2, 1].map(|n| (n, cube_faces(n))).to_vec();
+    let slices: Vec<_> = levels.iter().map(|(n, faces)| (*n, faces.each_ref().map(Vec::as_slice))).collect();
+    CubeTexture::new(&slices, true).unwrap()
+}
+
+fn cube_faces(n: u32) -> [Vec<[u8; 4]>; 6] {
+    senca_raster::cube::FACES.map(|axes| {
+        let texel = |i: u32| {
+            let place = |v: u32| (2 * v + 1) as f32 / n as f32 - 1.0;
+            let mut direction = [0.0; 3];
+            for ((axis, sign), v) in axes.into_iter().zip([1.0, place(i % n), place(i / n)]) {
+                direction[axis] = sign * v;
+            }
+            let [x, y, z] = direction.map(|v| (127.5 + 127.5 * v).round() as u8);
+            [x, y, z, 255]
+        };
+        (0..n * n).map(texel).collect()
+    })
+}
+
+#[test]
+fn cubes_agree_and_have_the_colour_of_their_direction() {
+    let (texture, depths) = (cube(), depths_of_a_mesh());
+    let mut mesh = Mesh::random(21, 120);
+    mesh.varyings.iter_mut().for_each(|v| *v = 2.0 * *v - 1.0);
+    for mip in [Mip::None, Mip::Nearest, Mip::Linear] {
+        for (n, shadow) in [false, true].into_iter().enumerate() {
+            let sampler = Sampler { mip, lod_bias: -1.0, ..Sampler::TRILINEAR };
+            let shadow = shadow.then_some(ShadowUnit {
+                depths: &depths,
+                coords: 0,
+                compare: Compare::Less,
+                filter: Filter::Nearest,
+                dims_colors: true,
+                dims_alpha: true,
+            });
+            let cube = Some(CubeUnit { texture: &texture, sampler, coords: 1 });
+            let shading = Shading::Fixed(FixedShading { cube, shadow, ..FixedShading::default() });
+            for multisample in [false, true] {
+                let state = State { multisample, ..State::default() };
+                let (plain, _) = draw(&mut ScanlineRasterizer, [150, 94], &mesh, &state, &shading);
+                let (fast, _) = draw(&mut tiled(1, SimdLevel::new()), [150, 94], &mesh, &state, &shading);
+                let (base, _) =
+                    draw(&mut tiled(2, SimdLevel::baseline()), [150, 94], &mesh, &state, &shading);
+                assert!(bits(&fast) == bits(&base));
+                let far = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 0.01);
+                let apart = plain.color.pixels().iter().zip(fast.color.pixels()).filter(|p| far(*p)).count();
+                // Where the level of detail is nearly that of another level, or the face another face.
+                assert!(apart < 20, "{mip:?} {n} {multisample}: {apart}");
+            }
+        }
+    }
+    // A square seen straight on from inside: the face +z, and beyond its edges the neighbours.
+    let corner = |x: f32, y: f32| Vec4::new(x, y, 0.5, 1.0);
+    let square = Mesh {
+        positions: vec![corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)],
+        varyings: [[-1.5, -1.5, 1., 0.], [1.5, -1.5, 1., 0.], [1.5, 1.5, 1., 0.], [-1.5, 1.5, 1., 0.]]
+            .concat(),
+        indices: vec![0, 1, 2, 0, 2, 3],
+    };
+    let cube = Some(CubeUnit { texture: &texture, sampler: Sampler::TRILINEAR, coords: 0 });
+    let shading = Shading::Fixed(FixedShading { cube, ..FixedShading::default() });
+    let (buffers, _) = draw(&mut TiledRasterizer::default(), [60, 60], &square, &State::default(), &shading);
+    for (x, y) in (0..60).flat_map(|y| (0..60).map(move |x| (x, y))) {
+        let place = |v: usize| (v as f32 + 0.5) / 60.0 * 3.0 - 1.5;
+        let direction = [place(x), -place(y), 1.0f32];
+        let longest = direction.iter().fold(0.0f32, |m, v| m.max(v.abs()));
+        for (found, d) in buffers.color.pixel(x as u32, y as u32).into_iter().zip(direction) {
+            assert!((found - 0.5 - 0.5 * d / longest).abs() < 0.04, "{x} {y}: {found} {direction:?}");
+        }
     }
 }

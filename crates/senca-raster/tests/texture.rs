@@ -4,8 +4,9 @@ use senca_math::Srgb8;
 use senca_math::color::srgb_from_linear;
 use senca_math::glam::{Mat4, Vec3, Vec4};
 use senca_raster::{
-    Buffers, ColorSource, Filter, Ids, Mip, Primitives, Rasterizer, Sampler, ScanlineRasterizer, Shading,
-    State, TexelGrid, Texels, Texture, TextureError, TextureLevel, TextureUnit, TiledRasterizer, Wrap,
+    Buffers, ColorSource, Filter, FixedShading, Ids, Mip, Primitives, Rasterizer, Sampler,
+    ScanlineRasterizer, Shading, State, TexelGrid, Texels, Texture, TextureError, TextureLevel, TextureUnit,
+    TiledRasterizer, Wrap,
 };
 
 fn checks(width: u32, height: u32, float: bool) -> Texture {
@@ -213,12 +214,7 @@ fn both_rasterizers_read_srgb_to_the_bit() {
     for sampler in [Sampler::NEAREST, Sampler::BILINEAR, Sampler::TRILINEAR] {
         let picture = |rasterizer: &mut dyn Rasterizer, texture: &Texture| {
             let unit = TextureUnit { texture, sampler, coords: 3 };
-            let shading = Shading::Fixed {
-                color: ColorSource::Rgb { first: 0 },
-                texture: Some(unit),
-                shadow: None,
-                alpha_test: None,
-            };
+            let shading = Shading::Fixed(FixedShading::textured(ColorSource::Rgb { first: 0 }, unit));
             let mut buffers = Buffers::new(90, 70);
             rasterizer.draw(&mut buffers.target().unwrap(), &primitives, &State::default(), &shading);
             buffers.color
@@ -260,12 +256,8 @@ fn both_rasterizers_read_textures_alike() {
                         let sampler =
                             Sampler { magnify, minify, mip, grid, ..Sampler::default() }.wrapped(wrap);
                         let unit = TextureUnit { texture: &texture, sampler, coords: 3 };
-                        let shading = Shading::Fixed {
-                            color: ColorSource::Rgb { first: 0 },
-                            texture: Some(unit),
-                            shadow: None,
-                            alpha_test: None,
-                        };
+                        let shading =
+                            Shading::Fixed(FixedShading::textured(ColorSource::Rgb { first: 0 }, unit));
                         let picture = |rasterizer: &mut dyn Rasterizer| {
                             let mut buffers = Buffers::new(90, 70);
                             rasterizer.draw(&mut buffers.target().unwrap(), &primitives, &state, &shading);

@@ -3,11 +3,12 @@
 
 use super::ops::Stencil;
 use super::real::{Color, Real, constant, mixed};
-use super::sample::{FACES, LINEAR, Level, Sampled, face_of};
+use super::sample::{LINEAR, Level, Sampled};
 use super::shade::{FogPlan, Unit};
 use crate::gl;
 use crate::state::TexTarget;
 use crate::texture::Texels;
+use senca_raster::cube::{FACES, face_of};
 use senca_raster::simd::{Simd, f32x16, i32x16, mask8x16, mask32x16, prelude::*, u8x16, u32x16};
 use senca_raster::{BlockDepths, Fragments, LANES};
 

@@ -7,6 +7,7 @@ use super::ops::compares;
 use crate::state::TexTarget;
 use crate::texture::{BaseFormat, TexImage, TexParams, Texels};
 use crate::{Enum, gl};
+use senca_raster::cube::{across_edge, face_of, on_face};
 use senca_raster::log2;
 use std::sync::{Arc, LazyLock};
 
@@ -227,8 +228,8 @@ impl Sampled {
         let value = match level.index(at, self.dimensions()) {
             Some(index) => self.stored(level, face, index),
             None if self.target == TexTarget::Cube && self.seamless => {
-                let (face, at) = across_edge(face, at, level.size[0]);
-                level.index(at, 2).map_or([0.0; 4], |index| self.stored(level, face, index))
+                let (face, [i, j]) = across_edge(face, [at[0], at[1]], level.size[0]);
+                level.index([i, j, 0], 2).map_or([0.0; 4], |index| self.stored(level, face, index))
             }
             None => self.border_color,
         };
@@ -294,52 +295,8 @@ fn mirrored(s: f32) -> f32 {
     if within > 1.0 { 2.0 - within } else { within }
 }
 
-/// Axes of the faces of a cube: the major axis, and which of x, y, z are s and t, each with its sign.
-pub(crate) const FACES: [[(usize, f32); 3]; 6] = [
-    [(0, 1.0), (2, -1.0), (1, -1.0)],
-    [(0, -1.0), (2, 1.0), (1, -1.0)],
-    [(1, 1.0), (0, 1.0), (2, 1.0)],
-    [(1, -1.0), (0, 1.0), (2, -1.0)],
-    [(2, 1.0), (0, 1.0), (1, -1.0)],
-    [(2, -1.0), (0, -1.0), (1, -1.0)],
-];
-
-/// The face that a direction meets.
-pub(crate) fn face_of([x, y, z]: [f32; 3]) -> usize {
-    let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
-    if ax >= ay && ax >= az {
-        usize::from(x < 0.0)
-    } else if ay >= az {
-        2 + usize::from(y < 0.0)
-    } else {
-        4 + usize::from(z < 0.0)
-    }
-}
-
-/// Where a direction meets the plane of a face, s and t being within [0, 1] on the face itself.
-pub(crate) fn on_face(face: usize, direction: [f32; 3]) -> [f32; 3] {
-    let [major, s, t] = FACES[face % 6].map(|(axis, sign)| sign * direction[axis]);
-    let scale = 0.5 / major;
-    [s * scale + 0.5, t * scale + 0.5, 0.0]
-}
-
 fn cube_face(direction: [f32; 3]) -> (usize, [f32; 3]) {
     let face = face_of(direction);
-    (face, on_face(face, direction))
-}
-
-/// The texel beyond the edge of a face: of the neighbour, or at corners, which have none, the nearest.
-fn across_edge(face: usize, [i, j, _]: [i32; 3], n: i32) -> (usize, [i32; 3]) {
-    let outside = |v: i32| v < 0 || v >= n;
-    if outside(i) && outside(j) {
-        return (face, [i.clamp(0, n - 1), j.clamp(0, n - 1), 0]);
-    }
-    let place = |v: i32| (2 * v + 1) as f32 / n as f32 - 1.0;
-    let mut direction = [0.0; 3];
-    for ((axis, sign), value) in FACES[face % 6].into_iter().zip([1.0, place(i), place(j)]) {
-        direction[axis] = sign * value;
-    }
-    let (face, [s, t, _]) = cube_face(direction);
-    let texel = |s: f32| ((s * n as f32).floor() as i32).clamp(0, n - 1);
-    (face, [texel(s), texel(t), 0])
+    let [s, t] = on_face(face, direction);
+    (face, [s, t, 0.0])
 }

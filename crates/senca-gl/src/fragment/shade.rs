@@ -2,9 +2,10 @@
 
 use super::env::{self, Sources};
 use super::real::{Color, Real, clamped};
-use super::sample::{Sampled, face_of, on_face};
+use super::sample::Sampled;
 use crate::gl;
 use crate::state::{Fog, TexEnv, TexTarget};
+use senca_raster::cube::{face_of, on_face};
 use senca_raster::{Fragments, LANES};
 
 /// A texture unit that is on.
@@ -91,7 +92,10 @@ impl Unit {
                 // Fragments outside of the mask may look past the edge of the face.
                 let seen = lanes.iter().position(|i| f.mask >> i & 1 == 1).unwrap_or(0);
                 let face = face_of(at[seen]);
-                at = at.map(|direction| on_face(face, direction));
+                at = at.map(|direction| {
+                    let [s, t] = on_face(face, direction);
+                    [s, t, 0.0]
+                });
             }
             let change = |a: usize, b: usize| -> [f32; 3] { std::array::from_fn(|k| at[b][k] - at[a][k]) };
             let lod = self.texture.lod([change(0, 1), change(0, 2)]);

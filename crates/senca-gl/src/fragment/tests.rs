@@ -58,7 +58,7 @@ fn view(target: TexTarget, params: TexParams, format: Enum, side: u32, r: &mut R
         let Some(smaller) = last.iter().map(next_level).collect::<Option<Result<Vec<_>, _>>>() else { break };
         levels.push(smaller.unwrap());
     }
-    View { params, levels }
+    View::of_levels(params, levels)
 }
 
 /// The layout of vertices with everything: colour, secondary colour, fog, two units.
@@ -336,7 +336,7 @@ fn the_chessboard_is_right_in_perspective() {
         ..TexParams::default()
     };
     let env = TexEnv { mode: gl::DECAL, ..TexEnv::default() };
-    let view = View { params, levels: vec![vec![image]] };
+    let view = View::of_levels(params, vec![vec![image]]);
     let s = RasterState {
         units: vec![UnitState { unit: 0, env, target: TexTarget::Two, view }],
         ..RasterState::default()

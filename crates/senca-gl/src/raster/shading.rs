@@ -7,8 +7,9 @@ use crate::state::{Cap, ColorBuffer, StencilBuffer, TexTarget};
 use crate::texture::{BaseFormat, TexImage, TexParams, Texels};
 use crate::{Enum, gl};
 use senca_raster::{
-    AlphaTest, Blend, ColorSource, Compare, Factor, Filter, Mip, Sampler, Shading, ShadowUnit, SharedTexels,
-    StencilOp, StencilTest, Target, Texture, TextureLevel, TextureUnit, Wrap,
+    AlphaTest, Blend, ColorSource, Compare, CubeTexture, CubeUnit, Factor, Filter, FixedShading, Mip,
+    Sampler, Shading, ShadowUnit, SharedTexels, StencilOp, StencilTest, Target, Texture, TextureLevel,
+    TextureUnit, Wrap,
 };
 use std::sync::Arc;
 
@@ -46,16 +47,26 @@ struct SimpleShadow {
     dims_alpha: bool,
 }
 
+/// A cube of textures that the rasterizer multiplies colours by, or that is all there is to see.
+#[derive(Debug)]
+struct SimpleCube {
+    texture: Arc<CubeTexture>,
+    sampler: Sampler,
+    coords: usize,
+    replaces: bool,
+}
+
 /// What units of texture do, if the rasterizer can do it by itself.
 #[derive(Debug, Default)]
 pub(super) struct SimpleUnits {
     texture: Option<SimpleTexture>,
+    cube: Option<SimpleCube>,
     shadow: Option<SimpleShadow>,
 }
 
 impl SimpleUnits {
-    /// Of a batch whose target has squares of `side` samples along each side of a pixel: a texture, or a shadow map, or
-    /// both. `None` if they are more than that.
+    /// Of a batch whose target has squares of `side` samples along each side of a pixel: a texture or a cube, or a
+    /// shadow map, or both. `None` if they are more than that.
     pub(super) fn new(batch: &Batch, side: u32) -> Option<Self> {
         let [first, second] = match batch.state.units.as_slice() {
             [] => return Some(Self::default()),
@@ -70,21 +81,25 @@ impl SimpleUnits {
         for unit in [first, second].into_iter().flatten() {
             match simple_shadow(batch, unit) {
                 Some(shadow) if units.shadow.is_none() => units.shadow = Some(shadow),
-                _ if units.texture.is_none() => {
-                    units.texture = Some(simple_texture(batch, unit)?.of_samples(side));
-                }
-                _ => return None,
+                _ if units.texture.is_some() || units.cube.is_some() => return None,
+                _ if unit.target == TexTarget::Cube => units.cube = Some(simple_cube(batch, unit, side)?),
+                _ => units.texture = Some(simple_texture(batch, unit, side)?),
             }
         }
         // After a shadow the texture would have the last word.
-        let replaces = units.texture.as_ref().is_some_and(|texture| texture.replaces);
-        (units.shadow.is_none() || !replaces).then_some(units)
+        (units.shadow.is_none() || !units.replaces()).then_some(units)
+    }
+
+    /// Whether the vertices' colours do not count.
+    fn replaces(&self) -> bool {
+        self.texture.as_ref().is_some_and(|texture| texture.replaces)
+            || self.cube.as_ref().is_some_and(|cube| cube.replaces)
     }
 }
 
 /// The shadow map of a unit, if the rasterizer can read it by itself: one that was drawn, modulating.
 fn simple_shadow(batch: &Batch, unit: &UnitState) -> Option<SimpleShadow> {
-    let View { params, levels } = &unit.view;
+    let View { params, levels, .. } = &unit.view;
     let [images] = levels.as_slice() else { return None };
     let image = images.first()?;
     let (Texels::Depth(depths) | Texels::DepthStencil { depth: depths, .. }) = &*image.texels else {
@@ -134,21 +149,47 @@ impl SimpleShadow {
     }
 }
 
-/// The texture of a unit, if the rasterizer can read it by itself: one of two dimensions and 8 bits,
-/// modulating or replacing, and not projected.
-fn simple_texture(batch: &Batch, unit: &UnitState) -> Option<SimpleTexture> {
-    let View { params, levels } = &unit.view;
-    let first = levels.first()?.first()?;
+/// Whether colours of vertices do not count where a unit's texture has a colour; `None` if the rasterizer cannot do with
+/// them what the unit wants.
+fn replaces(unit: &UnitState) -> Option<bool> {
+    let first = unit.view.levels.first()?.first()?;
     let colored =
         !matches!(first.format.base(), BaseFormat::Alpha | BaseFormat::Depth | BaseFormat::DepthStencil);
     let opaque = matches!(first.format.base(), BaseFormat::Rgb | BaseFormat::Luminance);
     let replaces = unit.env.mode == gl::REPLACE && !opaque;
-    let fits = unit.target == TexTarget::Two
-        && colored
+    let fits = colored
         && (replaces || unit.env.mode == gl::MODULATE)
         && first.border == 0
         && !first.format.is_srgb();
-    if !fits {
+    fits.then_some(replaces)
+}
+
+/// The cube of a unit, if the rasterizer can read it by itself: one of 8 bits, modulating or replacing, whose texels are
+/// mixed.
+fn simple_cube(batch: &Batch, unit: &UnitState, side: u32) -> Option<SimpleCube> {
+    let view = &unit.view;
+    let replaces = replaces(unit)?;
+    let seamless = batch.state.has(Cap::TextureCubeMapSeamless);
+    // Where faces are mixed there is no wrapping.
+    let params = match seamless {
+        true => TexParams { wrap: [gl::CLAMP_TO_EDGE; 3], ..view.params },
+        false => view.params,
+    };
+    let sampler = of_samples(sampler(&params, unit.env.lod_bias, view.levels.len())?, side);
+    let linear = [sampler.magnify, sampler.minify] == [Filter::Linear; 2];
+    if !linear || params.wrap[..2] != [gl::CLAMP_TO_EDGE; 2] {
+        return None;
+    }
+    let coords = usize::from(batch.layout.tex_coords[unit.unit]?);
+    Some(SimpleCube { texture: view.cube(seamless)?, sampler, coords, replaces })
+}
+
+/// The texture of a unit, if the rasterizer can read it by itself: one of two dimensions and 8 bits,
+/// modulating or replacing, and not projected.
+fn simple_texture(batch: &Batch, unit: &UnitState, side: u32) -> Option<SimpleTexture> {
+    let View { params, levels, .. } = &unit.view;
+    let replaces = replaces(unit)?;
+    if unit.target != TexTarget::Two {
         return None;
     }
     let coords = usize::from(batch.layout.tex_coords[unit.unit]?);
@@ -156,7 +197,7 @@ fn simple_texture(batch: &Batch, unit: &UnitState) -> Option<SimpleTexture> {
     if batch.varyings.chunks_exact(stride).any(|v| v[coords + 3] != 1.0) {
         return None;
     }
-    let sampler = sampler(params, unit.env.lod_bias, levels.len())?;
+    let sampler = of_samples(sampler(params, unit.env.lod_bias, levels.len())?, side);
     let level = |images: &Vec<TexImage>| {
         let image = images.first().filter(|image| matches!(*image.texels, Texels::Rgba8(_)))?;
         let shared = SharedTexels(Arc::new(Colors(Arc::clone(&image.texels))));
@@ -166,13 +207,10 @@ fn simple_texture(batch: &Batch, unit: &UnitState) -> Option<SimpleTexture> {
     Some(SimpleTexture { texture, sampler, coords, replaces })
 }
 
-impl SimpleTexture {
-    /// The same for a target whose pixels are samples, `side` along each side of a pixel: the level of detail is that
-    /// of the whole pixel (OpenGL 1.5, section 3.8.8).
-    fn of_samples(mut self, side: u32) -> Self {
-        self.sampler.lod_bias += side.ilog2() as f32;
-        self
-    }
+/// The same for a target whose pixels are samples, `side` along each side of a pixel: the level of detail is that of the
+/// whole pixel (OpenGL 1.5, section 3.8.8).
+fn of_samples(sampler: Sampler, side: u32) -> Sampler {
+    Sampler { lod_bias: sampler.lod_bias + side.ilog2() as f32, ..sampler }
 }
 
 /// The parameters of a texture in the rasterizer's terms, if it has them.
@@ -229,8 +267,10 @@ impl SimpleShading {
         let texture = self.units.texture.as_ref();
         let texture =
             texture.map(|t| TextureUnit { texture: &t.texture, sampler: t.sampler, coords: t.coords });
+        let cube = self.units.cube.as_ref();
+        let cube = cube.map(|c| CubeUnit { texture: &c.texture, sampler: c.sampler, coords: c.coords });
         let shadow = self.units.shadow.as_ref().and_then(SimpleShadow::unit);
-        Shading::Fixed { color, texture, shadow, alpha_test: self.alpha_test }
+        Shading::Fixed(FixedShading { color, texture, cube, shadow, alpha_test: self.alpha_test })
     }
 }
 
@@ -279,9 +319,9 @@ pub(super) fn simple_shading(
     }
     let blend = if s.has(Cap::Blend) { Some(blend_of(&s.color)?) } else { None };
     let blend = blend.filter(|b| *b != Blend { source: Factor::One, destination: Factor::Zero });
-    let color = match &units.texture {
-        Some(texture) if texture.replaces => ColorSource::Constant([1.0; 4]),
-        _ => constant.map_or(ColorSource::Rgba { first: 0 }, ColorSource::Constant),
+    let color = match units.replaces() {
+        true => ColorSource::Constant([1.0; 4]),
+        false => constant.map_or(ColorSource::Rgba { first: 0 }, ColorSource::Constant),
     };
     Some(SimpleShading { color: Some(color), units, alpha_test, blend, stencil })
 }
@@ -358,7 +398,7 @@ mod tests {
         let params =
             TexParams { min_filter: filter, mag_filter: filter, wrap: [wrap; 3], ..TexParams::default() };
         let env = TexEnv { mode, ..TexEnv::default() };
-        let view = View { params, levels: vec![vec![image]] };
+        let view = View::of_levels(params, vec![vec![image]]);
         let mut tex_coords = [None; crate::state::TEXTURE_UNITS];
         tex_coords[0] = Some(4);
         let mut batch =

@@ -5,7 +5,7 @@ use senca_math::Control;
 use senca_math::View;
 use senca_math::glam::Vec4;
 use senca_raster::{
-    ColorPlane, ColorSource, Counters, Ids, Primitives, Shading as RasterShading, State, Target,
+    ColorPlane, ColorSource, Counters, FixedShading, Ids, Primitives, Shading as RasterShading, State, Target,
 };
 use senca_scene::Scene;
 
@@ -92,12 +92,7 @@ fn draw_sample(
     };
     let state =
         State { viewport: Some(window.viewport()), line_width: settings.wire.width, ..State::default() };
-    let shading = RasterShading::Fixed {
-        color: ColorSource::Rgb { first: 0 },
-        texture: None,
-        shadow: None,
-        alpha_test: None,
-    };
+    let shading = RasterShading::Fixed(FixedShading::new(ColorSource::Rgb { first: 0 }));
     Ok(rasterizer(settings).draw_lines(&mut target.map_err(too_large)?, &primitives, &state, &shading))
 }
 

@@ -4,8 +4,8 @@ use senca_math::conventions::{canonical_from_depth, depth_from_canonical};
 use senca_math::glam::{DVec2, DVec3, Vec3, Vec4};
 use senca_math::{DeviceMap, LinearRgb, View};
 use senca_raster::{
-    Buffers, ColorSource, Counters, FragmentShader, Fragments, Ids, Interpolation, LANES, Primitives,
-    Rasterizer, Sampler, Shaded, Shading, State, Target, TexelGrid, Texture, Wrap,
+    Buffers, ColorSource, Counters, FixedShading, FragmentShader, Fragments, Ids, Interpolation, LANES,
+    Primitives, Rasterizer, Sampler, Shaded, Shading, State, Target, TexelGrid, Texture, Wrap,
 };
 use senca_scene::Fog;
 use senca_shading::{LightRig, PhongConstants, ShadingPoint, apply_fog, phong};
@@ -20,12 +20,7 @@ pub fn rasterize_gouraud(
     target: &mut Target<'_>,
 ) -> Counters {
     let varyings: Vec<f32> = list.iter().flat_map(|t| &t.vertices).flat_map(|v| v.light.to_array()).collect();
-    let shading = Shading::Fixed {
-        color: ColorSource::Rgb { first: 0 },
-        texture: None,
-        shadow: None,
-        alpha_test: None,
-    };
+    let shading = Shading::Fixed(FixedShading::new(ColorSource::Rgb { first: 0 }));
     fill(list, &varyings, rasterizer, target, &shading)
 }
 

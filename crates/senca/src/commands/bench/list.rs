@@ -7,8 +7,8 @@ use senca::io::NoFiles;
 use senca::io::images::{PictureFormat, PictureOptions, encode};
 use senca::math::glam::Vec4;
 use senca::raster::{
-    Buffers, Clear, ColorSource, Ids, Primitives, Rasterizer, Sampler, ScanlineRasterizer, Shading, State,
-    Texels, Texture, TextureUnit, TiledRasterizer,
+    Buffers, Clear, ColorSource, FixedShading, Ids, Primitives, Rasterizer, Sampler, ScanlineRasterizer,
+    Shading, State, Texels, Texture, TextureUnit, TiledRasterizer,
 };
 use senca::scene::{Shape, TessellationSettings, Tolerance, tessellate};
 
@@ -161,12 +161,9 @@ fn squares(
         let unit = |texture| TextureUnit { texture, sampler: Sampler::TRILINEAR, coords: 0 };
         let shading = match &texture {
             None => Shading::vertex_rgb(),
-            Some(texture) => Shading::Fixed {
-                color: ColorSource::Constant([1.0; 4]),
-                texture: Some(unit(texture)),
-                shadow: None,
-                alpha_test: None,
-            },
+            Some(texture) => {
+                Shading::Fixed(FixedShading::textured(ColorSource::Constant([1.0; 4]), unit(texture)))
+            }
         };
         let state = State { depth_test: senca::raster::Compare::Always, ..State::default() };
         draw(&mut *rasterizer, &mut buffers, &primitives, &state, &shading);
