@@ -343,10 +343,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             return self.depths(simd, lane, lanes, by, [top, bottom], [active, full]);
         }
         if self.pass.per_pixel {
-            for bx in (0..8).filter(|bx| active >> bx & 1 == 1) {
-                self.block_of_pixels(simd, lane, lanes, [bx, by], [top, bottom], full >> bx & 1 == 1);
-            }
-            return;
+            return self.row_of_pixels(simd, lane, lanes, by, [top, bottom], [active, full]);
         }
         let mut active = active;
         if self.pass.waits_only {

@@ -49,10 +49,34 @@ pub(crate) fn samples_in(mask: u16, bits: u16, pair: usize) -> u16 {
 }
 
 impl<const FAST: bool> TileDraw<'_, '_, FAST> {
+    /// Does with the blocks of row `by` that are `active`, of which those in `full` are wholly covered, what
+    /// [`Self::block_of_pixels`] does.
+    ///
+    /// A function of its own in the compiled kernel: inlined, it makes the other ways to draw slower.
+    #[inline(always)]
+    pub(crate) fn row_of_pixels<S: Simd>(
+        &mut self,
+        simd: S,
+        lane: usize,
+        lanes: &[i32x16<S>; 3],
+        by: i32,
+        rows: [i32; 2],
+        [active, full]: [u32; 2],
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for bx in (0..8).filter(|bx| active >> bx & 1 == 1) {
+                    self.block_of_pixels(simd, lane, lanes, [bx, by], rows, full >> bx & 1 == 1);
+                }
+            },
+        );
+    }
+
     /// Tests the samples of a triangle in a block, and keeps their pixels until [`Self::shade_waiting`]. `full` if all
     /// are covered.
     #[inline(always)]
-    pub(crate) fn block_of_pixels<S: Simd>(
+    fn block_of_pixels<S: Simd>(
         &mut self,
         simd: S,
         lane: usize,
