@@ -388,7 +388,11 @@ fn pass<'a>(
         shadow,
         alpha_test,
         waits,
-        waits_only: waits && !reads_depth && stencil.is_none() && target.ids.is_none(),
+        waits_only: waits
+            && alpha_test.is_none()
+            && !reads_depth
+            && stencil.is_none()
+            && target.ids.is_none(),
         per_pixel: waits && state.multisample,
         texels: texels.collect(),
         slots,

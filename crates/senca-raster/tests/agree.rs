@@ -637,3 +637,24 @@ fn cubes_agree_and_have_the_colour_of_their_direction() {
         }
     }
 }
+
+#[test]
+fn what_fails_the_alpha_test_is_not_counted() {
+    let mesh = Mesh::random(31, 90);
+    let alpha_test = Some(AlphaTest { compare: Compare::Less, reference: 0.5 });
+    let color = ColorSource::Rgba { first: 0 };
+    let shading = Shading::Fixed(FixedShading { color, alpha_test, ..FixedShading::default() });
+    for multisample in [false, true] {
+        // Colours and nothing else: no depth test, no identifiers.
+        let state = State { multisample, depth_test: Compare::Always, ..State::default() };
+        let draw = |rasterizer: &mut dyn Rasterizer| {
+            let mut pixels = vec![[0u8; 4]; 130 * 70];
+            let mut target =
+                Target::new(130, 70).unwrap().with_color(ColorPlane::Rgba8(&mut pixels)).unwrap();
+            let counters = rasterizer.draw(&mut target, &mesh.primitives(), &state, &shading);
+            (counters.passed, pixels)
+        };
+        let (plain, tiled) = (draw(&mut ScanlineRasterizer), draw(&mut TiledRasterizer::default()));
+        assert!(plain.0 > 0 && plain == tiled, "{multisample}: {} {}", plain.0, tiled.0);
+    }
+}
