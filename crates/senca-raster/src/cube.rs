@@ -327,8 +327,7 @@ mod tests {
     #[test]
     fn levels_must_follow_from_each_other() {
         let (four, two) = (faces(4), faces(2));
-        let slices = |faces: &'static [Vec<[u8; 4]>; 6]| faces.each_ref().map(Vec::as_slice);
-        let (four, two) = (slices(Box::leak(Box::new(four))), slices(Box::leak(Box::new(two))));
+        let (four, two) = (four.each_ref().map(Vec::as_slice), two.each_ref().map(Vec::as_slice));
         assert_eq!(CubeTexture::new(&[(4, four), (2, two)], true).unwrap().level_count(), 2);
         let error = |levels: &[(u32, [&[[u8; 4]]; 6])]| CubeTexture::new(levels, true).unwrap_err();
         assert_eq!(error(&[(4, four), (4, four)]), TextureError::Level { level: 1 });
