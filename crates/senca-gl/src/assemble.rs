@@ -176,7 +176,10 @@ impl Context {
         match mode {
             gl::POINTS => self.points(&plan, &processed, order),
             gl::LINES | gl::LINE_LOOP | gl::LINE_STRIP => self.lines(mode, &plan, &processed, order, last),
-            _ if plan.simple => self.simple_polygons(mode, &plan, &mut processed, order, last),
+            _ if plan.simple && plan.clip_planes.is_empty() => {
+                self.simple_polygons(mode, &plan, &mut processed, order, last);
+            }
+            _ if plan.simple => self.cut_polygons(mode, &plan, &mut processed, order, last),
             _ => self.polygons(mode, &plan, &processed, order),
         }
         self.immediate.plan = plan;
@@ -297,6 +300,37 @@ impl Context {
         }
     }
 
+    /// Polygons that need no look of their own unless a user clip plane goes through them; triangle by triangle.
+    fn cut_polygons(&mut self, mode: Enum, plan: &Plan, p: &mut Processed, order: Order<'_>, last: bool) {
+        // Of each vertex the planes it is beyond, bit by bit.
+        let beyond: Vec<u8> = p.eye.iter().map(|eye| beyond(&plan.clip_planes, *eye)).collect();
+        if beyond.iter().all(|planes| *planes == 0) {
+            return self.simple_polygons(mode, plan, p, order, last);
+        }
+        let none_left = beyond.iter().fold(u8::MAX, |all, planes| all & planes) != 0;
+        if none_left || (self.is_culled(true) && self.is_culled(false)) {
+            return;
+        }
+        let stride = usize::from(plan.layout.stride);
+        let base = self.begin_batch(Kind::Triangles, plan.layout);
+        self.batch.extend(p);
+        let mut numbers = Vec::new();
+        number_triangles(mode, order.count, 0, &mut numbers);
+        for triangle in numbers.as_chunks::<3>().0 {
+            let triangle = triangle.map(|k| order.at(k as usize));
+            let [a, b, c] = triangle.map(|i| beyond[i]);
+            if a | b | c == 0 {
+                self.batch.indices.extend(triangle.map(|i| base + i as u32));
+            } else if a & b & c == 0 {
+                let mut corners: Vec<Vertex> = triangle.iter().map(|&i| Vertex::of(p, i, stride)).collect();
+                for n in &plan.clip_planes {
+                    corners = clipped(corners, |v| n.dot(v.eye));
+                }
+                self.emit_fan(&corners);
+            }
+        }
+    }
+
     /// Polygons of one colour each that need nothing else.
     fn flat_polygons(&mut self, mode: Enum, plan: &Plan, p: &Processed, order: Order<'_>) {
         let stride = usize::from(plan.layout.stride);
@@ -413,6 +447,11 @@ impl Context {
         }
         number_fan(base, corners.len(), &mut self.batch.indices);
     }
+}
+
+/// The planes that a place is beyond, bit by bit.
+fn beyond(planes: &[Vec4], eye: Vec4) -> u8 {
+    planes.iter().enumerate().fold(0, |bits, (k, n)| bits | u8::from(!(n.dot(eye) >= 0.0)) << k)
 }
 
 /// The triangles of a convex polygon of `count` corners, numbered from `base` on.

@@ -162,9 +162,10 @@ pub(crate) struct Plan {
     pub(crate) needs_edges: bool,
     needs_sizes: bool,
     point: crate::state::Point,
-    /// Whether primitives need no look of their own: filled, smooth, one colour for both sides, no user clip planes.
+    /// Whether primitives need no look of their own where no user clip plane cuts them: filled, smooth, one colour for
+    /// both sides.
     pub(crate) simple: bool,
-    /// The same but for being flat.
+    /// The same but for being flat, and without user clip planes.
     pub(crate) simple_flat: bool,
 }
 
@@ -247,7 +248,7 @@ impl Plan {
         let two_sided = lighting && s.lighting.two_side;
         let filled = s.polygon.mode == [gl::FILL; 2];
         let flat = s.lighting.shade_model == gl::FLAT;
-        let plain = filled && !two_sided && clip_planes.is_empty() && context.render_mode.is_render();
+        let plain = filled && !two_sided && context.render_mode.is_render();
         let eye_from_object_normal = normal_matrix(eye_from_object);
         let third = eye_from_object_normal.transpose().col(2).length();
         Self {
@@ -272,7 +273,7 @@ impl Plan {
             needs_sizes,
             point: s.point,
             simple: plain && !flat,
-            simple_flat: plain && flat,
+            simple_flat: plain && flat && clip_planes.is_empty(),
             clip_planes,
         }
     }

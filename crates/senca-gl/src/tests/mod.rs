@@ -172,6 +172,45 @@ fn user_clip_planes_cut() {
     assert_eq!(pixel(&mut c, 8, 4, 3), [255; 4]);
 }
 
+/// Drawn with planes is what is drawn without, within the planes: whole triangles to the bit, cut ones but for rounding.
+#[test]
+fn user_clip_planes_leave_the_rest_as_it_was() {
+    let draw = |planes: bool| {
+        let mut c = context(64, 64);
+        if planes {
+            c.clip_plane(gl::CLIP_PLANE0, [1.0, 0.25, 0.0, 0.1]);
+            c.clip_plane(gl::CLIP_PLANE3, [-0.5, 1.0, 0.0, 0.3]);
+            c.enable(gl::CLIP_PLANE0);
+            c.enable(gl::CLIP_PLANE3);
+        }
+        for row in 0..8 {
+            c.begin(gl::QUAD_STRIP);
+            for k in 0..18 {
+                let (x, y) = ((k / 2) as f32 / 4.0 - 1.0, (row + k % 2) as f32 / 4.0 - 1.0);
+                c.color([0.5 + 0.5 * x * y, (x * 3.0).sin().abs(), 1.0 - y.abs()]);
+                c.vertex([x, y]);
+            }
+            c.end();
+        }
+        c.flush();
+        c.window_pixels().to_vec()
+    };
+    let (whole, cut) = (draw(false), draw(true));
+    let (mut within, mut same) = (0, 0);
+    for (i, (whole, cut)) in whole.iter().zip(&cut).enumerate() {
+        let [x, y] = [i % 64, i / 64].map(|p| (p as f32 + 0.5) / 32.0 - 1.0);
+        let least = (x + 0.25 * y + 0.1).min(-0.5 * x + y + 0.3);
+        if least > 1e-4 {
+            within += 1;
+            same += usize::from(whole == cut);
+            assert!(whole.iter().zip(cut).all(|(a, b)| a.abs_diff(*b) <= 1), "{x} {y}");
+        } else if least < -1e-4 {
+            assert_eq!(*cut, [0; 4], "{x} {y}");
+        }
+    }
+    assert!(within > 1000 && same > within * 9 / 10, "{same} of {within}");
+}
+
 /// The course text's picking example, section 5.10: three objects in the plane z = 0, all hit.
 #[test]
 fn three_hits_have_thirteen_words() {
