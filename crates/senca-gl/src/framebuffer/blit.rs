@@ -6,7 +6,7 @@
 //! Source: ARB_framebuffer_object, section 4.3.3.
 
 use super::plane::{Area, Plane};
-use crate::texture::Texels;
+use crate::texture::{BaseFormat, Texels};
 use rayon::prelude::*;
 
 /// Rows that a thread takes at once.
@@ -275,8 +275,13 @@ fn resolve8(source: &Plane, from: &[[u8; 4]], destination: &mut Plane, nearest: 
         let to = &mut to[to_x..];
         if let Some((skip, x)) = run {
             let pairs = low[2 * x..].as_chunks::<2>().0.iter().zip(high[2 * x..].as_chunks::<2>().0);
-            for (texel, (low, high)) in to[skip..nearest.columns.len()].iter_mut().zip(pairs) {
-                *texel = base.stored(mean([low[0], low[1], high[0], high[1]]), 255);
+            let to = &mut to[skip..nearest.columns.len()];
+            // Two loops: the first one becomes vector instructions.
+            for (texel, (low, high)) in to.iter_mut().zip(pairs) {
+                *texel = mean([low[0], low[1], high[0], high[1]]);
+            }
+            if base != BaseFormat::Rgba {
+                to.iter_mut().for_each(|texel| *texel = base.stored(*texel, 255));
             }
             return;
         }
