@@ -41,6 +41,7 @@ mod get;
 pub mod gl;
 mod image_state;
 mod immediate;
+mod light_lanes;
 mod lighting;
 mod list;
 mod matrix;

@@ -4,6 +4,7 @@ use crate::state::{Cap, LIGHTS, Light, Material};
 use crate::vertex::clamp01;
 use crate::{Context, Enum, gl};
 use senca_math::glam::{Vec3, Vec4, Vec4Swizzles};
+use senca_raster::SimdLevel;
 
 /// A lit vertex; both colours are clamped to [0, 1].
 #[derive(Clone, Copy, Debug)]
@@ -14,17 +15,17 @@ pub(crate) struct Lit {
 
 /// A light that is on, with what does not change from vertex to vertex.
 #[derive(Clone, Copy, Debug)]
-struct LightSource {
-    light: Light,
+pub(crate) struct LightSource {
+    pub(crate) light: Light,
     /// Towards the light, when it is infinitely far.
-    direction: Option<Vec3>,
+    pub(crate) direction: Option<Vec3>,
     /// Half-way between light and viewer, when both are infinitely far.
-    half: Option<Vec3>,
-    position: Vec3,
-    spot_direction: Vec3,
+    pub(crate) half: Option<Vec3>,
+    pub(crate) position: Vec3,
+    pub(crate) spot_direction: Vec3,
     /// -1 for none.
-    spot_cosine: f32,
-    attenuates: bool,
+    pub(crate) spot_cosine: f32,
+    pub(crate) attenuates: bool,
 }
 
 impl LightSource {
@@ -47,13 +48,15 @@ impl LightSource {
 /// How vertices are lit, worked out of the state once.
 #[derive(Clone, Debug)]
 pub(crate) struct LightPlan {
-    sources: Vec<LightSource>,
-    ambient: Vec3,
-    local_viewer: bool,
-    separate: bool,
-    materials: [Material; 2],
+    pub(crate) sources: Vec<LightSource>,
+    pub(crate) ambient: Vec3,
+    pub(crate) local_viewer: bool,
+    pub(crate) separate: bool,
+    pub(crate) materials: [Material; 2],
     /// What the colour of a vertex replaces, of front and back.
-    color_material: [Option<Enum>; 2],
+    pub(crate) color_material: [Option<Enum>; 2],
+    /// Vector instructions vertices are lit with.
+    pub(crate) level: SimdLevel,
 }
 
 impl LightPlan {
@@ -72,6 +75,7 @@ impl LightPlan {
             separate: l.color_control == gl::SEPARATE_SPECULAR_COLOR,
             materials: l.materials,
             color_material: [tracked(gl::FRONT), tracked(gl::BACK)],
+            level: SimdLevel::new(),
         }
     }
 
@@ -80,7 +84,8 @@ impl LightPlan {
         self.color_material.iter().any(Option::is_some)
     }
 
-    /// The colours of a vertex at `eye`, with normal and colour, of the front (0) or back (1).
+    /// The colours of a vertex at `eye`, with normal and colour, of the front (0) or back (1): the plain form of
+    /// [`Self::light_lanes`].
     pub(crate) fn light(&self, eye: Vec4, normal: Vec3, color: [f32; 4], side: usize) -> Lit {
         let mut material = self.materials[side];
         if let Some(mode) = self.color_material[side] {
@@ -148,25 +153,27 @@ impl LightSource {
     }
 }
 
-/// `base` to the `exponent`, where 0 to the 0 is 1.
+/// `base` to the `exponent`, where 0 to the 0 is 1; finite, so that nothing times it is nothing.
 #[inline]
 fn power(base: f32, exponent: f32) -> f32 {
-    if exponent == 0.0 { 1.0 } else { base.powf(exponent) }
+    if exponent == 0.0 { 1.0 } else { base.powf(exponent).min(f32::MAX) }
+}
+
+/// Whether `part` of a material is what `mode` of colour material replaces.
+pub(crate) fn tracks(mode: Enum, part: Enum) -> bool {
+    mode == part || (mode == gl::AMBIENT_AND_DIFFUSE && (part == gl::AMBIENT || part == gl::DIFFUSE))
 }
 
 impl Material {
     /// Puts a colour where `mode` says.
     pub(crate) fn track(&mut self, mode: Enum, color: [f32; 4]) {
-        match mode {
-            gl::AMBIENT => self.ambient = color,
-            gl::DIFFUSE => self.diffuse = color,
-            gl::SPECULAR => self.specular = color,
-            gl::EMISSION => self.emission = color,
-            _ => {
-                self.ambient = color;
-                self.diffuse = color;
-            }
-        }
+        let parts = [
+            (gl::AMBIENT, &mut self.ambient),
+            (gl::DIFFUSE, &mut self.diffuse),
+            (gl::SPECULAR, &mut self.specular),
+            (gl::EMISSION, &mut self.emission),
+        ];
+        parts.into_iter().filter(|(part, _)| tracks(mode, *part)).for_each(|(_, to)| *to = color);
     }
 }
 

@@ -1,11 +1,14 @@
 //! From vertices as the program gives them to vertices as the rasterizer takes them: transformation,
 //! lighting, texture coordinates, fog coordinates (OpenGL 1.5, sections 2.11 to 2.14).
 
+use crate::light_lanes::normalized_or_zero;
 use crate::lighting::LightPlan;
 use crate::state::{CLIP_PLANES, Cap, TEXTURE_UNITS, TexGen};
 use crate::{Context, gl};
 use rayon::prelude::*;
 use senca_math::glam::{Mat3, Mat4, Vec3, Vec4, Vec4Swizzles};
+use senca_raster::LANES;
+use senca_raster::simd::{Simd, dispatch, f32x16, prelude::*};
 
 /// Vertices for which a second thread is worth its while.
 const WORTH_SHARING: usize = 4096;
@@ -413,19 +416,20 @@ impl Chunk<'_> {
         for (to, from) in positions.iter_mut().zip(from) {
             *to = plan.clip_from_object * Vec4::from(*from);
         }
+        if let Some(lighting) = &plan.lighting {
+            dispatch!(lighting.level, simd => self.light(simd, lighting, varyings));
+            if stride == 4 {
+                return;
+            }
+        }
         for (k, to) in varyings.chunks_exact_mut(stride).enumerate() {
             let i = self.first + k;
             let eye = if plan.needs_eye { self.eye(i) } else { Vec4::ZERO };
-            let (color, secondary) = match &plan.lighting {
-                Some(lighting) => {
-                    let lit = lighting.light(eye, self.normal(i), input.colors.get(i), 0);
-                    (lit.color, lit.secondary)
+            if plan.lighting.is_none() {
+                to[..4].copy_from_slice(&input.colors.get(i).map(clamp01));
+                if let Some(at) = plan.layout.secondary {
+                    to[usize::from(at)..][..3].copy_from_slice(&input.secondary.get(i).map(clamp01));
                 }
-                None => (input.colors.get(i).map(clamp01), input.secondary.get(i).map(clamp01)),
-            };
-            to[..4].copy_from_slice(&color);
-            if let Some(at) = plan.layout.secondary {
-                to[usize::from(at)..][..3].copy_from_slice(&secondary);
             }
             if let Some(at) = plan.layout.fog {
                 to[usize::from(at)] = match plan.fog {
@@ -441,6 +445,60 @@ impl Chunk<'_> {
                 }
             }
         }
+    }
+
+    /// Colours of lit vertices, sixteen at a time.
+    #[inline(always)]
+    fn light<S: Simd>(&self, simd: S, lighting: &LightPlan, varyings: &mut [f32]) {
+        let stride = usize::from(self.plan.layout.stride);
+        for (n, some) in varyings.chunks_mut(LANES * stride).enumerate() {
+            let (first, count) = (self.first + n * LANES, some.len() / stride);
+            let eye = self.eyes(simd, first, count);
+            let normal = self.normals(simd, first, count);
+            let color = match lighting.color_material() {
+                true => loaded(simd, &self.input.colors, first, count),
+                false => [f32x16::splat(simd, 1.0); 4],
+            };
+            let lit = lighting.light_lanes(simd, eye, normal, color, 0);
+            put(some, stride, 0, &lit.color);
+            if let Some(at) = self.plan.layout.secondary {
+                put(some, stride, usize::from(at), &lit.secondary);
+            }
+        }
+    }
+
+    /// As [`Self::eye`], of `count` vertices from number `first` on.
+    #[inline(always)]
+    fn eyes<S: Simd>(&self, simd: S, first: usize, count: usize) -> [f32x16<S>; 4] {
+        let [x, y, z, w] = loaded(simd, &Attr::Each(self.input.positions), first, count);
+        let m = self.plan.eye_from_object.to_cols_array_2d();
+        let mut eye = [x; 4];
+        for (k, eye) in eye.iter_mut().enumerate() {
+            let [mx, my, mz, mw] = [
+                f32x16::splat(simd, m[0][k]),
+                f32x16::splat(simd, m[1][k]),
+                f32x16::splat(simd, m[2][k]),
+                f32x16::splat(simd, m[3][k]),
+            ];
+            *eye = mx * x + my * y + mz * z + mw * w;
+        }
+        eye
+    }
+
+    /// As [`Self::normal`], of `count` vertices from number `first` on.
+    #[inline(always)]
+    fn normals<S: Simd>(&self, simd: S, first: usize, count: usize) -> [f32x16<S>; 3] {
+        let plan = self.plan;
+        let [x, y, z] = loaded(simd, &self.input.normals, first, count);
+        let m = plan.eye_from_object_normal.to_cols_array_2d();
+        let rescale = f32x16::splat(simd, plan.rescale);
+        let mut normal = [x; 3];
+        for (k, normal) in normal.iter_mut().enumerate() {
+            let [mx, my, mz] =
+                [f32x16::splat(simd, m[0][k]), f32x16::splat(simd, m[1][k]), f32x16::splat(simd, m[2][k])];
+            *normal = (mx * x + my * y + mz * z) * rescale;
+        }
+        if plan.normalize { normalized_or_zero(simd, normal) } else { normal }
     }
 
     #[inline]
@@ -487,6 +545,44 @@ impl Chunk<'_> {
                 gl::REFLECTION_MAP if k < 3 => reflection()[k],
                 _ => coords[k],
             };
+        }
+    }
+}
+
+/// An attribute of `count` vertices, at least one and at most sixteen, from number `first` on; of the last one from
+/// there on.
+#[inline(always)]
+fn loaded<S: Simd, const N: usize>(
+    simd: S,
+    from: &Attr<'_, [f32; N]>,
+    first: usize,
+    count: usize,
+) -> [f32x16<S>; N] {
+    let mut lanes = [[0.0; LANES]; N];
+    for lane in 0..LANES {
+        let value = from.get(first + lane.min(count - 1));
+        for (lanes, v) in lanes.iter_mut().zip(value) {
+            lanes[lane] = v;
+        }
+    }
+    let mut loaded = [f32x16::splat(simd, 0.0); N];
+    for (to, lanes) in loaded.iter_mut().zip(&lanes) {
+        *to = f32x16::load_array_ref(simd, lanes);
+    }
+    loaded
+}
+
+/// Puts numbers of as many vertices as there are into their varyings, from number `at` on.
+#[inline(always)]
+fn put<S: Simd, const N: usize>(varyings: &mut [f32], stride: usize, at: usize, from: &[f32x16<S>; N]) {
+    let mut lanes = [[0.0; LANES]; N];
+    for (to, from) in lanes.iter_mut().zip(from) {
+        from.store_array(to);
+    }
+    for (lane, to) in varyings.chunks_exact_mut(stride).enumerate() {
+        let Some(to) = to.get_mut(at..).and_then(|to| to.first_chunk_mut::<N>()) else { return };
+        for (to, lanes) in to.iter_mut().zip(&lanes) {
+            *to = lanes[lane % LANES];
         }
     }
 }
