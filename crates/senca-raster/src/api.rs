@@ -354,7 +354,7 @@ pub struct Blend {
 impl Blend {
     /// Source over destination, alpha not multiplied in.
     pub const OVER: Self = Self { source: Factor::SourceAlpha, destination: Factor::OneMinusSourceAlpha };
-    /// Sum.
+    /// Sum. In targets of 8 bits that of the bytes: the new colour is rounded first.
     pub const ADD: Self = Self { source: Factor::One, destination: Factor::One };
     /// Product.
     pub const MULTIPLY: Self = Self { source: Factor::DestinationColor, destination: Factor::Zero };

@@ -1,7 +1,7 @@
 //! Blending, and packing to 8 bits, sixteen pixels at a time. The plain twin is in [`crate::pixel`].
 
 use crate::api::{Blend, Factor};
-use fearless_simd::{Simd, f32x16, i32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x16, i32x16, prelude::*, u8x64, u32x16};
 
 /// Red, green, blue, alpha of 16 pixels.
 pub(crate) type Rgba<S> = [f32x16<S>; 4];
@@ -43,6 +43,13 @@ pub(crate) fn pack_tame<S: Simd>(simd: S, [r, g, b, a]: Rgba<S>) -> u32x16<S> {
 pub(crate) fn byte<S: Simd>(simd: S, v: f32x16<S>) -> u32x16<S> {
     let clamped = v.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
     rounded(simd, clamped)
+}
+
+/// [`Blend::ADD`] of packed colours.
+#[inline(always)]
+pub(crate) fn sum_of_bytes<S: Simd>(simd: S, a: u32x16<S>, b: u32x16<S>) -> u32x16<S> {
+    let (a, b): (u8x64<S>, u8x64<S>) = (a.bitcast(), b.bitcast());
+    simd.saturating_add_u8x64(a, b).bitcast()
 }
 
 #[inline(always)]

@@ -9,11 +9,11 @@
 //! 3. A vector is two rows of 8 pixels. Depth is tested before anything is interpolated.
 
 use crate::api::{
-    AlphaTest, ColorSource, Compare, FixedShading, Fragments, LANES, MAX_VARYINGS, Shaded, Shading, State,
-    StencilOp, StencilTest, TextureUnit,
+    AlphaTest, Blend, ColorSource, Compare, FixedShading, Fragments, LANES, MAX_VARYINGS, Shaded, Shading,
+    State, StencilOp, StencilTest, TextureUnit,
 };
 use crate::batch::{Batch, PlaneLanes};
-use crate::blend::{Rgba, blended, pack, unpack};
+use crate::blend::{Rgba, blended, pack, sum_of_bytes, unpack};
 use crate::cube::CubeUnit;
 use crate::setup::{Bounds, HALF, SUB, ScreenMap, ScreenVertex, SetupState};
 use crate::shadow::ShadowUnit;
@@ -818,11 +818,12 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             ColorFormat::Rgba8 => {
                 let plane = &mut self.buffer.rgba8[block][pair];
                 let stored = u32x16::load_array_ref(simd, plane);
-                let rgba = match blend {
-                    None => rgba,
-                    Some(blend) => blended(simd, blend, rgba, unpack(simd, stored)),
+                let packed = match blend {
+                    None => pack(simd, rgba),
+                    Some(Blend::ADD) => sum_of_bytes(simd, pack(simd, rgba), stored),
+                    Some(blend) => pack(simd, blended(simd, blend, rgba, unpack(simd, stored))),
                 };
-                keep.select(pack(simd, rgba), stored).store_array(plane);
+                keep.select(packed, stored).store_array(plane);
             }
             ColorFormat::Rgba32F => {
                 let [r, g, b, a] = &mut self.buffer.rgba;

@@ -54,6 +54,10 @@ fn write_color(plane: &mut ColorPlane<'_>, i: usize, rgba: [f32; 4], blend: Opti
     let mix = |old: [f32; 4]| blend.map_or(rgba, |b| blended(b, rgba, old));
     match plane {
         ColorPlane::Rgba32F(p) => p[i] = mix(p[i]),
+        ColorPlane::Rgba8(p) if blend == Some(Blend::ADD) => {
+            let bytes = rgba8_from_rgba(rgba);
+            p[i] = std::array::from_fn(|k| p[i][k].saturating_add(bytes[k]));
+        }
         ColorPlane::Rgba8(p) => p[i] = rgba8_from_rgba(mix(p[i].map(|v| f32::from(v) * (1.0 / 255.0)))),
     }
 }

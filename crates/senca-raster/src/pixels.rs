@@ -5,11 +5,11 @@
 //! lanes `2c`, `2c + 1`, `2c + 8` and `2c + 9`. (Stages are given samples in another order; see
 //! [`crate::multisample`].)
 
-use crate::api::LANES;
-use crate::blend::Rgba;
+use crate::api::{Blend, LANES};
+use crate::blend::{Rgba, pack, sum_of_bytes};
 use crate::cover::{Place, TileDraw, edge_at};
 use crate::textured::Waiting;
-use crate::tile::BLOCKS;
+use crate::tile::{BLOCKS, ColorFormat};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// Vectors of a block.
@@ -140,6 +140,10 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         bits: u16,
         rgba: Rgba<S>,
     ) {
+        let blend = if FAST { None } else { self.pass.state.blend };
+        if FAST || (self.pass.format == ColorFormat::Rgba8 && blend.is_none_or(|blend| blend == Blend::ADD)) {
+            return self.write_packed_pixels(simd, block, samples, bits, pack(simd, rgba));
+        }
         for (pair, mask) in samples.iter().enumerate() {
             let mask = samples_in(*mask, bits, pair);
             if mask != 0 {
@@ -155,7 +159,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         }
     }
 
-    /// The same of packed colours that replace what is there.
+    /// The same of packed colours that replace what is there or, if there is blending, are added to it.
     #[inline(always)]
     pub(crate) fn write_packed_pixels<S: Simd>(
         &mut self,
@@ -165,6 +169,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         bits: u16,
         packed: u32x16<S>,
     ) {
+        let adds = !FAST && self.pass.state.blend.is_some();
         for (pair, mask) in samples.iter().enumerate() {
             let mask = samples_in(*mask, bits, pair);
             if mask != 0 {
@@ -172,6 +177,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 let plane = &mut self.buffer.rgba8[block % (BLOCKS * BLOCKS)][pair];
                 let stored = u32x16::load_array_ref(simd, plane);
                 let packed = spread(packed.bitcast(), pair).bitcast();
+                let packed = if adds { sum_of_bytes(simd, packed, stored) } else { packed };
                 keep.select(packed, stored).store_array(plane);
             }
         }
