@@ -512,6 +512,11 @@ impl AlphaTest {
     pub fn passes(&self, alpha: f32) -> bool {
         self.compare.passes(alpha.clamp(0.0, 1.0), self.reference)
     }
+
+    /// Whether nothing without alpha passes, whatever it is multiplied by.
+    pub(crate) fn drops_zero(&self) -> bool {
+        matches!(self.compare, Compare::Greater | Compare::GreaterEqual) && !self.passes(0.0)
+    }
 }
 
 /// A texture, how it is read, and where its coordinates are.

@@ -334,7 +334,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 let (uv, at) = self.coordinates(simd, &vector, slot);
                 self.keep_color(simd, &at, first + k);
                 let job = &mut self.queue.staged[k];
-                (job.bits, job.lookup) = (vector.bits, first + k);
+                (job.bits, job.lookup) = (self.queue.waiting[(first + k) % WAITING].bits, first + k);
                 (job.level, job.two_levels) = (0, false);
                 job.taps[0].address(simd, unit, level, uv, are_tame(simd, uv));
             }
@@ -466,12 +466,18 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         ([varying(simd, u, lane, &at), varying(simd, v, lane, &at)], at)
     }
 
-    /// Puts the colour of the vector of number `k` by its lookup, unless it is the same everywhere.
+    /// Puts the colour of the vector of number `k` by its lookup, unless it is the same everywhere. Lanes that cannot
+    /// pass the alpha test any more are taken out.
     #[inline(always)]
     fn keep_color<S: Simd>(&mut self, simd: S, at: &At<S>, k: usize) {
         if self.same_color().is_none() {
             let color = self.base_color(simd, &self.queue.waiting[k % WAITING], at);
             store4(color, &mut self.queue.lookups[k % WAITING].color);
+            if self.pass.alpha_test.is_some_and(|test| test.drops_zero()) {
+                // No texel makes more of it.
+                let some = color[3].simd_gt(f32x16::splat(simd, 0.0));
+                self.queue.waiting[k % WAITING].bits &= some.to_bitmask() as u16;
+            }
         }
     }
 
@@ -482,6 +488,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let lane = vector.place.lane;
         let (uv, at) = self.coordinates(simd, &vector, slot);
         self.keep_color(simd, &at, k);
+        if self.queue.waiting[k % WAITING].bits == 0 {
+            return;
+        }
         let lookup = &mut self.queue.lookups[k];
         footprint(simd, unit.texture, self.batch, lane, slot, &at, uv).store_array(&mut lookup.footprint);
         lookup.tame = are_tame(simd, uv);
@@ -496,6 +505,9 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let lane = vector.place.lane;
         let at = self.at_vector(simd, &vector);
         self.keep_color(simd, &at, k);
+        if self.queue.waiting[k % WAITING].bits == 0 {
+            return;
+        }
         let batch = &*self.batch;
         let [x, y, z] = [
             &batch.varyings[slot % MAX_VARYINGS],
