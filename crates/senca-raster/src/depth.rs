@@ -6,7 +6,7 @@ use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 use crate::api::Compare;
 use crate::batch::Batch;
 use crate::block_depths::{Covered, DepthForm};
-use crate::cover::{LANE_FX, LANE_FY, TileDraw, along, row_of};
+use crate::cover::{LANE_FX, LANE_FY, TileDraw, row_of};
 
 /// Row pairs of a block.
 const PAIRS: usize = 4;
@@ -43,6 +43,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         [active, full]: [u32; 2],
         passes: impl Fn(f32x16<S>, f32x16<S>) -> mask32x16<S>,
     ) {
+        // 1. What is the same for the whole row.
         let b = &*self.batch;
         let [left, above] = [b.offset[0][lane], b.offset[1][lane] + 8 * by];
         let mut rows = [f32x16::splat(simd, 0.0); PAIRS];
@@ -52,47 +53,48 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             rows[pair as usize % PAIRS] = row_of(simd, &b.depth, lane, fy);
         }
         let (nearest, farthest) = (f32x16::splat(simd, b.z_min[lane]), f32x16::splat(simd, b.z_max[lane]));
+        let dx = f32x16::splat(simd, b.depth[1][lane]);
+        let edges = RowEdges::new(simd, b, lane, lanes, 8 * by + 2 * top);
         let (mut tested, mut passed) = (0, 0);
         let mut remaining = active;
         while remaining != 0 {
+            // 2. Planes, where they do.
             let bx = remaining.trailing_zeros() as i32;
             remaining &= remaining - 1;
-            let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (left + 8 * bx) as f32);
             let block = (8 * by + bx) as usize & 63;
-            let is_full = full >> bx & 1 == 1;
-            let first = [8 * bx, 8 * by + 2 * top];
+            let (first, more) = ([8 * bx, 8 * by + 2 * top], bottom - top);
+            let mut pixels = (full >> bx & 1 == 1).then_some(u64::MAX);
             if self.buffer.formed >> block & 1 == 1 {
                 if self.nearer_than_level(lane, block) {
-                    let pixels = if is_full {
-                        u64::MAX
-                    } else {
-                        self.inside_of_block(simd, lane, lanes, first, bottom - top) << (16 * top)
-                    };
-                    if self.cover_some(lane, block, pixels) {
+                    let inside = pixels.unwrap_or_else(
+                        #[inline(always)]
+                        || self.inside_of_block(simd, &edges, first, more) << (16 * top),
+                    );
+                    if self.cover_some(lane, block, inside) {
                         continue;
                     }
+                    pixels = Some(inside);
                 }
                 self.buffer.unfold(simd, block);
             }
-            let mut edges = edges_at(simd, &*self.batch, lane, lanes, first);
+            // 3. Values.
+            let fx = f32x16::load_array(simd, LANE_FX) + f32x16::splat(simd, (left + 8 * bx) as f32);
+            let across = dx * fx;
+            let mut at = edges.at(simd, first[0]);
             let mut written = 0;
             for pair in top..=bottom {
-                let inside = if is_full {
-                    mask32x16::splat(simd, true)
-                } else {
-                    self.inside(simd, &edges, [8 * bx, 8 * by + 2 * pair])
+                let inside = match pixels {
+                    Some(pixels) => mask32x16::from_bitmask(simd, pixels >> (16 * pair) & 0xffff),
+                    None => self.inside(simd, &at, [first[0], 8 * by + 2 * pair]),
                 };
-                let z = along(simd, &self.batch.depth, lane, rows[pair as usize % PAIRS], fx);
-                let z = z.max(nearest).min(farthest);
+                let z = (rows[pair as usize % PAIRS] + across).max(nearest).min(farthest);
                 let plane = &mut self.buffer.depth[block][pair as usize % PAIRS];
                 let stored = f32x16::load_array_ref(simd, plane);
                 let pass = inside & passes(z, stored);
                 pass.select(z, stored).store_array(plane);
                 tested += inside.to_bitmask().count_ones();
                 written += pass.to_bitmask().count_ones();
-                for (k, edge) in edges.iter_mut().enumerate() {
-                    *edge += i32x16::splat(simd, self.batch.edge_dy[k][lane].wrapping_mul(2));
-                }
+                at = edges.next(at);
             }
             passed += written;
             self.buffer.written |= u64::from(written != 0) << block;
@@ -111,21 +113,12 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
 
     /// Pixels inside a triangle, of `more` + 1 row pairs of a block from `first` on: sixteen of each pair.
     #[inline(always)]
-    fn inside_of_block<S: Simd>(
-        &self,
-        simd: S,
-        lane: usize,
-        lanes: &[i32x16<S>; 3],
-        [x, y]: [i32; 2],
-        more: i32,
-    ) -> u64 {
-        let mut edges = edges_at(simd, &*self.batch, lane, lanes, [x, y]);
+    fn inside_of_block<S: Simd>(&self, simd: S, edges: &RowEdges<S>, [x, y]: [i32; 2], more: i32) -> u64 {
+        let mut at = edges.at(simd, x);
         let mut pixels = 0;
         for pair in 0..=more.min(PAIRS as i32 - 1) {
-            pixels |= self.inside(simd, &edges, [x, y + 2 * pair]).to_bitmask() << (16 * pair);
-            for (k, edge) in edges.iter_mut().enumerate() {
-                *edge += i32x16::splat(simd, self.batch.edge_dy[k][lane].wrapping_mul(2));
-            }
+            pixels |= self.inside(simd, &at, [x, y + 2 * pair]).to_bitmask() << (16 * pair);
+            at = edges.next(at);
         }
         pixels
     }
@@ -190,21 +183,46 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     }
 }
 
-/// The edges of a triangle at the vector of this column and row of the tile.
-#[inline(always)]
-fn edges_at<S: Simd>(
-    simd: S,
-    b: &Batch,
-    lane: usize,
-    lanes: &[i32x16<S>; 3],
-    [x, y]: [i32; 2],
-) -> [i32x16<S>; 3] {
-    let mut edges = *lanes;
-    for (k, edge) in edges.iter_mut().enumerate() {
-        let (dx, dy) = (b.edge_dx[k][lane].wrapping_mul(x), b.edge_dy[k][lane].wrapping_mul(y));
-        *edge += i32x16::splat(simd, b.edge[k][lane].wrapping_add(dx).wrapping_add(dy));
+/// The edges of a triangle along a row of blocks.
+struct RowEdges<S: Simd> {
+    /// At the first vector of the row.
+    start: [i32x16<S>; 3],
+    /// Change from one column of pixels to the next.
+    dx: [i32; 3],
+    /// Change from one row pair to the next.
+    below: [i32x16<S>; 3],
+}
+
+impl<S: Simd> RowEdges<S> {
+    /// From row `y` of the tile on.
+    #[inline(always)]
+    fn new(simd: S, b: &Batch, lane: usize, lanes: &[i32x16<S>; 3], y: i32) -> Self {
+        let (mut start, mut below, mut steps) = (*lanes, *lanes, [0; 3]);
+        for k in 0..3 {
+            let dy = b.edge_dy[k][lane];
+            start[k] += i32x16::splat(simd, b.edge[k][lane].wrapping_add(dy.wrapping_mul(y)));
+            below[k] = i32x16::splat(simd, dy.wrapping_mul(2));
+            steps[k] = b.edge_dx[k][lane];
+        }
+        Self { start, dx: steps, below }
     }
-    edges
+
+    /// At column `x` of the tile.
+    #[inline(always)]
+    fn at(&self, simd: S, x: i32) -> [i32x16<S>; 3] {
+        let [a, b, c] = self.start;
+        [
+            a + i32x16::splat(simd, self.dx[0].wrapping_mul(x)),
+            b + i32x16::splat(simd, self.dx[1].wrapping_mul(x)),
+            c + i32x16::splat(simd, self.dx[2].wrapping_mul(x)),
+        ]
+    }
+
+    /// One row pair on.
+    #[inline(always)]
+    fn next(&self, [a, b, c]: [i32x16<S>; 3]) -> [i32x16<S>; 3] {
+        [a + self.below[0], b + self.below[1], c + self.below[2]]
+    }
 }
 
 #[inline(always)]
