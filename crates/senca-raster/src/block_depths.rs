@@ -288,7 +288,10 @@ impl BlockDepths {
             return;
         }
         let keep = mask32x16::from_bitmask(simd, u64::from(planar));
-        let [value, dx, dy, x, y, low, high] = planes.map(|plane| f32x16::load_array(simd, plane));
+        let [value, dx, dy, x, y, low, high] = [0, 1, 2, 3, 4, 5, 6].map(
+            #[inline(always)]
+            |k| f32x16::load_array_ref(simd, &planes[k]),
+        );
         let within = |numbers: &[i32; LANES]| {
             (i32x16::load_array_ref(simd, numbers) & i32x16::splat(simd, TILE as i32 - 1))
                 .to_float::<f32x16<S>>()

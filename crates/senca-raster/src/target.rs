@@ -278,12 +278,14 @@ impl Default for ClearMasks {
 
 /// Each component clamped to [0, 1] and rounded to 8 bits; NaN becomes 0.
 #[must_use]
-pub fn rgba8_from_rgba(rgba: [f32; 4]) -> [u8; 4] {
-    rgba.map(|v| {
+#[inline]
+pub fn rgba8_from_rgba([r, g, b, a]: [f32; 4]) -> [u8; 4] {
+    let byte = |v: f32| {
         let low = if v > 0.0 { v } else { 0.0 };
         let clamped = if low < 1.0 { low } else { 1.0 };
         (clamped * 255.0 + 0.5) as u8
-    })
+    };
+    [byte(r), byte(g), byte(b), byte(a)]
 }
 
 /// Owned planes: a picture, depths and, if asked for, identifiers.

@@ -436,9 +436,7 @@ impl TileBuffer {
         match (band.color.as_mut().filter(|_| touches.color || color.is_some()), color) {
             (Some(ColorPlane::Rgba8(p)), clear) => {
                 let clear = clear.map(rgba8_from_rgba);
-                rows.store(p, clear, |block, row| {
-                    eight(&self.rgba8[block % COUNT], row).map(u32::to_le_bytes)
-                });
+                rows.store(p, clear, |block, row| eight(&self.rgba8[block % COUNT], row, u32::to_le_bytes));
             }
             (Some(ColorPlane::Rgba32F(p)), clear) => rows.store(p, clear, |block, row| {
                 let at = |k: usize, x: usize| self.rgba[k][block].as_flattened()[row + x];
@@ -448,17 +446,17 @@ impl TileBuffer {
         }
         let depth = clear.and_then(|c| c.depth);
         if let Some(p) = band.depth.as_mut().filter(|_| touches.depth || depth.is_some()) {
-            rows.store(p, depth, |block, row| eight(&self.depth[block % COUNT], row));
+            rows.store(p, depth, |block, row| eight(&self.depth[block % COUNT], row, |v| v));
         }
         if let Some(depths) = &mut band.blocks {
             self.store_forms(depths, tile_x / TILE, depth.filter(|_| seen == 0), present & !formed);
         }
         let stencil = clear.and_then(|c| c.stencil);
         if let Some(p) = band.stencil.as_mut().filter(|_| touches.stencil || stencil.is_some()) {
-            rows.store(p, stencil, |block, row| eight(&self.stencil[block % COUNT], row));
+            rows.store(p, stencil, |block, row| eight(&self.stencil[block % COUNT], row, |v| v));
         }
         if let Some(p) = &mut band.ids {
-            rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block % COUNT], row));
+            rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block % COUNT], row, |v| v));
         }
     }
 }
@@ -490,12 +488,12 @@ fn farthest_of(block: &Block<f32>, reversed: bool) -> f32 {
     most.into_iter().fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a })
 }
 
-/// Eight pixels of a block, from number `first` on.
+/// Eight pixels of a block, from number `first` on, as they are stored.
 #[inline(always)]
-fn eight<T: Copy>(block: &Block<T>, first: usize) -> [T; 8] {
+fn eight<T: Copy, U>(block: &Block<T>, first: usize, stored: impl Fn(T) -> U) -> [U; 8] {
     let pair = &block[first / LANES % 4];
     let half = first % LANES / 8 * 8;
-    std::array::from_fn(|x| pair[half + x])
+    std::array::from_fn(|x| stored(pair[half + x]))
 }
 
 /// The rows of a tile within its band.
