@@ -99,7 +99,7 @@ pub struct State {
     /// Pattern lines are broken up by. Default: none.
     pub stipple: Option<LineStipple>,
     /// Whether squares of 2 x 2 pixels of the target are the samples of one pixel: a [`Shading::Stage`],
-    /// and a [`Shading::Fixed`] that is more than a colour on triangles, then colour once
+    /// and a [`Shading::Fixed`] that is more than one colour on triangles, then colour once
     /// per such pixel, at its centre, and merge sample by sample. Viewport, scissor and sizes are those of the
     /// target all the same, and so are footprints in textures. The target's sides must be even. Other
     /// shadings colour every sample. Default: no.
@@ -430,7 +430,7 @@ impl<'a> FixedShading<'a> {
     }
 
     /// Whether there is more than a colour.
-    fn has_more(&self) -> bool {
+    pub(crate) fn has_more(&self) -> bool {
         self.texture.is_some() || self.cube.is_some() || self.shadow.is_some() || self.alpha_test.is_some()
     }
 }
@@ -467,7 +467,7 @@ impl Shading<'_> {
     /// Whether pixels of several samples are coloured once; see [`State::multisample`].
     pub(crate) fn colors_pixels(&self) -> bool {
         match self {
-            Self::Fixed(fixed) => fixed.has_more(),
+            Self::Fixed(fixed) => fixed.has_more() || !matches!(fixed.color, ColorSource::Constant(_)),
             Self::Stage(_) => true,
             Self::None | Self::Custom(_) => false,
         }

@@ -1,7 +1,8 @@
 //! The tiled rasterizer: project, bin, then draw tile by tile on as many threads as wanted.
 
 use crate::api::{
-    Compare, Counters, Interpolation, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shading, State,
+    Compare, Counters, FixedShading, Interpolation, LANES, MAX_VARYINGS, Primitives, Rasterizer, Shading,
+    State,
 };
 use crate::assemble::{varyings_of, vertex_count};
 use crate::batch::Batch;
@@ -345,7 +346,8 @@ fn pass<'a>(
     let cube = fixed.and_then(|fixed| fixed.cube.as_ref()).filter(|_| texture.is_none());
     let cube = cube.map(|unit| (unit, first));
     let shadow = fixed.and_then(|fixed| fixed.shadow.as_ref()).map(|unit| (unit, second));
-    let waits = shading.colors_pixels() && fixed.is_some();
+    let per_pixel = state.multisample && shading.colors_pixels() && fixed.is_some();
+    let waits = per_pixel || fixed.is_some_and(FixedShading::has_more);
     let of_texture = texture.map(|(unit, _)| unit.texture.levels.iter().filter_map(|l| l.texels.rgba8()));
     let of_cube = cube.map(|(unit, _)| unit.texture.texels());
     let texels = of_texture.into_iter().flatten().chain(of_cube.into_iter().flatten());
@@ -393,7 +395,7 @@ fn pass<'a>(
             && !reads_depth
             && stencil.is_none()
             && target.ids.is_none(),
-        per_pixel: waits && state.multisample,
+        per_pixel,
         texels: texels.collect(),
         slots,
         color_only: false,

@@ -549,17 +549,15 @@ fn pixels_of_four_samples_have_the_colour_of_their_middle() {
         let row: Vec<f32> = (0..8).map(|x| buffers.color.pixel(x, 3)[0]).collect();
         assert_eq!(row, expected, "{multisample}");
     }
-    // A colour that changes from column to column and a test none fails: samples of a pixel have one colour.
-    let alpha_test = Some(AlphaTest { compare: Compare::GreaterEqual, reference: 0.0 });
-    let shading = Shading::Fixed(FixedShading {
-        color: ColorSource::Rgba { first: 0 },
-        alpha_test,
-        ..FixedShading::default()
-    });
-    let state = State { multisample: true, ..State::default() };
-    let (buffers, _) = draw(&mut TiledRasterizer::default(), [8, 8], &square, &state, &shading);
-    for x in 0..8 {
-        assert!((buffers.color.pixel(x, 5)[0] - (x / 2 * 2 + 1) as f32 / 8.0).abs() < 1e-6);
+    // A colour that changes from column to column, alone and with a test none fails: samples of a pixel have one colour.
+    for alpha_test in [None, Some(AlphaTest { compare: Compare::GreaterEqual, reference: 0.0 })] {
+        let color = ColorSource::Rgba { first: 0 };
+        let shading = Shading::Fixed(FixedShading { color, alpha_test, ..FixedShading::default() });
+        let state = State { multisample: true, ..State::default() };
+        let (buffers, _) = draw(&mut TiledRasterizer::default(), [8, 8], &square, &state, &shading);
+        for x in 0..8 {
+            assert!((buffers.color.pixel(x, 5)[0] - (x / 2 * 2 + 1) as f32 / 8.0).abs() < 1e-6);
+        }
     }
 }
 
