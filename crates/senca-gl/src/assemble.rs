@@ -451,7 +451,10 @@ impl Context {
 
 /// The planes that a place is beyond, bit by bit.
 fn beyond(planes: &[Vec4], eye: Vec4) -> u8 {
-    planes.iter().enumerate().fold(0, |bits, (k, n)| bits | u8::from(!(n.dot(eye) >= 0.0)) << k)
+    planes.iter().enumerate().fold(0, |bits, (k, n)| {
+        let within = n.dot(eye) >= 0.0;
+        bits | u8::from(!within) << k
+    })
 }
 
 /// The triangles of a convex polygon of `count` corners, numbered from `base` on.
