@@ -292,17 +292,17 @@ mod tests {
             c.enable(light);
             c.light(light, gl::AMBIENT, &four(0.2));
             c.light(light, gl::DIFFUSE, &four(1.0));
-            c.light(light, gl::SPECULAR, &if seed % 5 == 0 { [0.0; 4] } else { four(1.0) });
+            c.light(light, gl::SPECULAR, &if seed.is_multiple_of(5) { [0.0; 4] } else { four(1.0) });
             let [x, y, z, w] = four(2.0);
-            let far = if (seed + k) % 2 == 0 { 0.0 } else { w + 0.1 };
+            let far = if (seed + k).is_multiple_of(2) { 0.0 } else { w + 0.1 };
             c.light(light, gl::POSITION, &[x - 1.0, y - 1.0, z - 0.5, far]);
-            if (seed / 2 + k) % 2 == 0 {
+            if (seed / 2 + k).is_multiple_of(2) {
                 let [x, y, z, e] = four(1.0);
                 c.light(light, gl::SPOT_DIRECTION, &[x - 0.5, y - 0.5, -z]);
                 c.light(light, gl::SPOT_CUTOFF, &[20.0 + 60.0 * e]);
                 c.light(light, gl::SPOT_EXPONENT, &[if e > 0.3 { 30.0 * e } else { 0.0 }]);
             }
-            if (seed / 3 + k) % 2 == 0 {
+            if (seed / 3 + k).is_multiple_of(2) {
                 c.light(light, gl::LINEAR_ATTENUATION, &[four(1.0)[0]]);
                 c.light(light, gl::QUADRATIC_ATTENUATION, &[four(1.0)[0]]);
             }
@@ -312,10 +312,10 @@ mod tests {
         }
         c.material(gl::FRONT_AND_BACK, gl::SHININESS, &[four(128.0)[1]]);
         c.light_model(gl::LIGHT_MODEL_LOCAL_VIEWER, &[(seed / 4 % 2) as f32]);
-        if seed % 3 == 0 {
+        if seed.is_multiple_of(3) {
             c.light_model(gl::LIGHT_MODEL_COLOR_CONTROL, &[gl::SEPARATE_SPECULAR_COLOR as f32]);
         }
-        if seed % 4 != 0 {
+        if !seed.is_multiple_of(4) {
             let modes = [gl::AMBIENT, gl::DIFFUSE, gl::SPECULAR, gl::EMISSION, gl::AMBIENT_AND_DIFFUSE];
             c.color_material(gl::FRONT_AND_BACK, modes[seed as usize % 5]);
             c.enable(gl::COLOR_MATERIAL);
@@ -335,9 +335,9 @@ mod tests {
             let (mut eye, mut normal, color) = (of(4), of(3), of(4));
             eye[2].iter_mut().for_each(|z| *z -= 1.5);
             eye[3].iter_mut().for_each(|w| *w = 1.0 + 0.2 * *w);
-            for lane in 0..LANES - 2 {
-                let n = Vec3::new(normal[0][lane], normal[1][lane], normal[2][lane]).normalize_or_zero();
-                (0..3).for_each(|k| normal[k][lane] = n[k]);
+            let [x, y, z] = &mut normal[..] else { unreachable!("three of them") };
+            for ((x, y), z) in x.iter_mut().zip(y).zip(z).take(LANES - 2) {
+                [*x, *y, *z] = Vec3::new(*x, *y, *z).normalize_or_zero().to_array();
             }
             (0..3).for_each(|k| normal[k][LANES - 1] = 0.0);
             let (mut found, mut second) = ([[0.0; LANES]; 4], [[0.0; LANES]; 3]);
