@@ -8,7 +8,8 @@
 use crate::api::{Interpolation, LANES, MAX_VARYINGS};
 use crate::assemble::TriangleVaryings;
 use crate::bin::pixel_box;
-use crate::cover::{Pass, TileEdges};
+use crate::blend::pack;
+use crate::cover::{ColorPath, Pass, TileEdges};
 use crate::setup::{Bounds, HALF, SUB, SUB_BITS, ScreenVertex, Setup, double_area};
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 
@@ -53,6 +54,10 @@ pub(crate) struct Batch {
     pub(crate) affine: u16,
     /// Bit by lane: corners 1 and 2 exchanged; the triangle shows its front.
     pub(crate) swapped: u16,
+    /// Bit by lane: all corners have the same colour.
+    pub(crate) flat: u16,
+    /// Those colours in 8 bits, red in the low byte.
+    pub(crate) flat_color: [u32; LANES],
 }
 
 impl Default for Batch {
@@ -81,6 +86,8 @@ impl Default for Batch {
             interpolated: Vec::with_capacity(MAX_VARYINGS),
             affine: 0,
             swapped: 0,
+            flat: 0,
+            flat_color: [0; LANES],
         }
     }
 }
@@ -171,6 +178,24 @@ impl Batch {
                 self.set_large(lane, pass, tile, bounds, slots);
             }
         }
+        self.flat = 0;
+        if let ColorPath::Varying { alpha } = pass.color {
+            self.set_flat(simd, if alpha { 4 } else { 3 });
+        }
+    }
+
+    /// Finds the lanes whose colour, in the first `count` slots, is the same everywhere.
+    #[inline(always)]
+    fn set_flat<S: Simd>(&mut self, simd: S, count: usize) {
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        let (mut flat, mut color) = (mask32x16::splat(simd, true), [one; 4]);
+        for (color, [c, dx, dy]) in color.iter_mut().zip(&self.varyings[..count]) {
+            *color = f32x16::load_array_ref(simd, c);
+            flat &= f32x16::load_array_ref(simd, dx).simd_eq(zero);
+            flat &= f32x16::load_array_ref(simd, dy).simd_eq(zero);
+        }
+        self.flat = flat.to_bitmask() as u16;
+        pack(simd, color).store_array(&mut self.flat_color);
     }
 
     #[inline(always)]

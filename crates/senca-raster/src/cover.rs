@@ -663,6 +663,14 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let rgba = match self.pass.color {
             ColorPath::None => return pass,
             ColorPath::Constant(rgba) => splat4(simd, rgba),
+            ColorPath::Varying { .. } if FAST && self.batch.flat >> lane & 1 == 1 => {
+                self.counts.shaded += u64::from(bits.count_ones());
+                let plane = &mut self.buffer.rgba8[place.block][place.pair];
+                let stored = u32x16::load_array_ref(simd, plane);
+                let color = u32x16::splat(simd, self.batch.flat_color[lane]);
+                keep.select(color, stored).store_array(plane);
+                return keep;
+            }
             ColorPath::Varying { alpha } => {
                 let at = self.at(simd, lane, fx, row.fy);
                 colors(simd, self.batch, lane, 0, alpha, &at)

@@ -38,7 +38,7 @@ fn is_tame([c, dx, dy]: [f32; 3], x: [f32; 2], y: [f32; 2]) -> bool {
 
 impl<const FAST: bool> TileDraw<'_, '_, FAST> {
     /// Colours the blocks of row `by` whose bits are set, all of their pixels. Returns whether it could: the triangle
-    /// must be affine. The pass is one of [`is_color_only`].
+    /// must be affine or of one colour. The pass is one of [`is_color_only`].
     #[inline(always)]
     pub(crate) fn color_blocks<S: Simd>(&mut self, simd: S, lane: usize, by: i32, blocks: u32) -> bool {
         let Some(planes) = self.color_planes(lane) else { return false };
@@ -72,7 +72,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let plane = |slot: usize| b.varyings[slot].map(|term| term[lane % LANES]);
         match self.pass.color {
             ColorPath::Constant(rgba) => Some(rgba.map(|v| [v, 0.0, 0.0])),
-            ColorPath::Varying { alpha } if b.affine >> lane & 1 == 1 => {
+            ColorPath::Varying { alpha } if (b.affine | b.flat) >> lane & 1 == 1 => {
                 let last = if alpha { plane(3) } else { [1.0, 0.0, 0.0] };
                 Some([plane(0), plane(1), plane(2), last])
             }
