@@ -4,20 +4,28 @@
 //!
 //! A plane's depth at a pixel is found by the same operations in the same order as when it is drawn, so
 //! nothing shows whether depths have been kept this way.
+//!
+//! Tiles may wait until somebody looks at them; see [`crate::later`].
 
 use crate::api::LANES;
 use crate::bin::TILE;
 use crate::cover::{LANE_FX, LANE_FY};
+use crate::later::Later;
 use crate::target::{MAX_TARGET_SIDE, TargetError};
-use crate::tile::{BLOCKS, Block};
+use crate::tile::{BLOCKS, Block, BlockPlane, blocks_of};
+use crate::tiled::lock;
 use fearless_simd::{Level, Simd, dispatch, f32x16, i32x16, mask32x16, prelude::*};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Blocks of a tile.
 pub(crate) const COUNT: usize = BLOCKS * BLOCKS;
 /// Planes that a tile keeps; blocks that need more are kept as values.
 const PLANES: usize = 64;
+
+/// Tiles over which bounds of depths are looked up at most.
+const BOUNDED: usize = 16;
 
 /// Numbers of a [`DepthForm`].
 const FORM: usize = 7;
@@ -90,6 +98,8 @@ pub(crate) struct TileForms {
     inner: [u8; COUNT],
     /// Which pixels have the inner plane, row by row; of blocks that are not cut, any.
     inner_pixels: [u64; COUNT],
+    /// Depths of the blocks that are values, in their order.
+    values: Vec<Block<f32>>,
 }
 
 impl Default for TileForms {
@@ -102,6 +112,7 @@ impl Default for TileForms {
             planes: [DepthForm::level(0.0); PLANES],
             inner: [0; COUNT],
             inner_pixels: [0; COUNT],
+            values: Vec::new(),
         }
     }
 }
@@ -112,14 +123,34 @@ impl TileForms {
         self.planes[0] = DepthForm::level(depth);
         (self.count, self.valued, self.cut) = (1, 0, 0);
         self.outer = [0; COUNT];
+        self.values.clear();
     }
 
-    /// Takes what another has.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.planes[..other.count].copy_from_slice(&other.planes[..other.count]);
-        (self.count, self.valued, self.cut, self.outer) = (other.count, other.valued, other.cut, other.outer);
-        if other.cut != 0 {
-            (self.inner, self.inner_pixels) = (other.inner, other.inner_pixels);
+    /// Which of the values are those of a block.
+    #[inline(always)]
+    fn place_of(&self, block: usize) -> usize {
+        (self.valued & ((1 << block) - 1)).count_ones() as usize
+    }
+
+    /// The depths of a block that is kept as values.
+    #[inline(always)]
+    pub(crate) fn values_of(&self, block: usize) -> &Block<f32> {
+        self.values.get(self.place_of(block)).unwrap_or(&[[0.0; LANES]; 4])
+    }
+
+    /// Keeps the depths of some blocks as values.
+    pub(crate) fn keep(&mut self, blocks: u64, depths: &BlockPlane<f32>) {
+        if blocks == 0 {
+            return;
+        }
+        let others = self.valued & !blocks;
+        let before: Vec<Block<f32>> = blocks_of(others).map(|block| *self.values_of(block)).collect();
+        let mut before = before.into_iter();
+        self.valued |= blocks;
+        self.values.clear();
+        for block in blocks_of(self.valued) {
+            let kept = if others >> block & 1 == 1 { before.next() } else { None };
+            self.values.push(kept.unwrap_or_else(|| depths[block]));
         }
     }
 
@@ -217,20 +248,41 @@ pub(crate) enum Covered {
     TooMuch,
 }
 
+/// Memory of tiles that is used again: boxes, as they come from tiles and go to tiles.
+type Spares = Mutex<Vec<Box<TileForms>>>;
+
 /// Depths of a picture in blocks; see [`crate::TiledRasterizer::draw_depths`]. Row 0 on top.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct BlockDepths {
     width: usize,
     height: usize,
     /// Tiles in a row.
     columns: usize,
-    tiles: Vec<TileForms>,
-    /// Depths of the blocks that are kept as values, block after block, tile after tile.
-    values: Vec<f32>,
+    /// Those that are not there yet are what `later` draws.
+    tiles: Vec<OnceLock<Box<TileForms>>>,
+    later: Later,
+    /// Whether `later` is all that has been drawn.
+    is_later_all: bool,
+    spares: Spares,
+}
+
+impl Clone for BlockDepths {
+    /// All tiles of the copy are there.
+    fn clone(&self) -> Self {
+        let tiles = (0..self.tiles.len()).filter_map(|k| self.tile(k));
+        let tiles = tiles.map(|tile| OnceLock::from(Box::new(tile.clone())));
+        Self {
+            tiles: tiles.collect(),
+            later: Later::level(0.0),
+            is_later_all: false,
+            spares: Mutex::default(),
+            ..*self
+        }
+    }
 }
 
 impl BlockDepths {
-    /// A picture that has one depth everywhere. Memory for values is not touched before it is needed.
+    /// A picture that has one depth everywhere.
     ///
     /// # Errors
     /// [`TargetError::TooLarge`].
@@ -240,10 +292,51 @@ impl BlockDepths {
         }
         let (width, height) = (width as usize, height as usize);
         let columns = width.div_ceil(TILE);
-        let tiles = columns * height.div_ceil(TILE);
-        let mut tile = TileForms::default();
-        tile.clear(depth);
-        Ok(Self { width, height, columns, tiles: vec![tile; tiles], values: vec![0.0; tiles * TILE * TILE] })
+        let mut tiles = Vec::new();
+        tiles.resize_with(columns * height.div_ceil(TILE), OnceLock::new);
+        let later = Later::level(depth);
+        Ok(Self { width, height, columns, tiles, later, is_later_all: true, spares: Mutex::default() })
+    }
+
+    /// What the tiles that are not there yet are drawn from, to be changed. All are such from now on.
+    pub(crate) fn begin_later(&mut self) -> &mut Later {
+        let spares = self.spares.get_mut().unwrap_or_else(PoisonError::into_inner);
+        spares.extend(self.tiles.iter_mut().filter_map(OnceLock::take));
+        self.is_later_all = true;
+        &mut self.later
+    }
+
+    /// A tile; drawn now if it has not been yet.
+    #[inline(always)]
+    fn tile(&self, k: usize) -> Option<&TileForms> {
+        self.tiles.get(k).map(|tile| &**tile.get_or_init(|| self.draw_tile(k)))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn draw_tile(&self, k: usize) -> Box<TileForms> {
+        self.later.draw_tile(k, lock(&self.spares).pop().unwrap_or_default())
+    }
+
+    /// A depth that none in a rectangle of pixels (first and last, which are in the picture) is greater than, or,
+    /// unless `greatest`, less than, if that is known without drawing them.
+    #[inline(always)]
+    pub(crate) fn bound(&self, columns: [i32; 2], rows: [i32; 2], greatest: bool) -> Option<f32> {
+        if !self.is_later_all || columns[1] < columns[0] || rows[1] < rows[0] {
+            return None;
+        }
+        let [[x0, x1], [y0, y1]] = [columns, rows].map(|ends| ends.map(|v| v as u32 as usize / TILE));
+        if (x1 - x0 + 1) * (y1 - y0 + 1) > BOUNDED {
+            return None;
+        }
+        let mut bound = if greatest { 0.0f32 } else { 1.0 };
+        for y in y0..=y1 {
+            for x in x0..=x1 {
+                let [low, high] = self.later.bounds(y * self.columns + x);
+                bound = if greatest { bound.max(high) } else { bound.min(low) };
+            }
+        }
+        Some(bound)
     }
 
     /// Width in pixels.
@@ -343,7 +436,7 @@ impl BlockDepths {
     #[inline(always)]
     fn form_of_square(&self, corners: [(usize, usize); 4]) -> Option<&DepthForm> {
         let [tile, block, _] = self.place(corners[0]);
-        let forms = self.tiles.get(tile)?;
+        let forms = self.tile(tile)?;
         if forms.valued >> block & 1 == 1 {
             return None;
         }
@@ -363,7 +456,7 @@ impl BlockDepths {
     #[inline(always)]
     fn form_of_all(&self, corners: [(usize, usize); 4]) -> Option<&DepthForm> {
         let [tile, ..] = self.place(corners[0]);
-        let forms = self.tiles.get(tile)?;
+        let forms = self.tile(tile)?;
         let number = |corner| {
             let [of, block, pixel] = self.place(corner);
             (of == tile).then(|| forms.number(block, pixel)).flatten()
@@ -411,53 +504,60 @@ impl BlockDepths {
     #[inline(always)]
     fn at(&self, x: usize, y: usize) -> f32 {
         let [tile, block, pixel] = self.place((x, y));
-        let Some(forms) = self.tiles.get(tile) else { return 0.0 };
+        let Some(forms) = self.tile(tile) else { return 0.0 };
         match forms.number(block, pixel) {
             Some(number) => forms.planes[number % PLANES].at((x % TILE) as f32, (y % TILE) as f32),
-            None => self.values.get(tile * TILE * TILE + block * 64 + pixel).copied().unwrap_or_default(),
+            None => forms.values_of(block).as_flattened()[pixel],
         }
     }
 
     #[inline(always)]
     fn block<S: Simd>(&self, simd: S, tile: usize, block: usize, to: &mut Block<f32>) {
-        if self.tiles[tile].valued >> block & 1 == 1 {
-            let from = &self.values[tile * TILE * TILE + block * 64..][..64];
-            to.as_flattened_mut().copy_from_slice(from);
+        let Some(forms) = self.tile(tile) else { return };
+        if forms.valued >> block & 1 == 1 {
+            *to = *forms.values_of(block);
         } else {
-            self.tiles[tile].values(simd, block, to);
+            forms.values(simd, block, to);
         }
     }
 
-    /// The rows of tiles.
+    /// The rows of tiles. What is drawn to them is not drawn by `later`.
     pub(crate) fn bands(&mut self) -> impl Iterator<Item = BandDepths<'_>> {
-        let columns = self.columns.max(1);
-        let values = self.values.chunks_mut(columns * TILE * TILE);
-        self.tiles.chunks_mut(columns).zip(values).map(|(tiles, values)| BandDepths { tiles, values })
+        self.is_later_all = false;
+        let (columns, later, spares) = (self.columns.max(1), &self.later, &self.spares);
+        let rows = self.tiles.chunks_mut(columns).enumerate();
+        rows.map(move |(row, tiles)| BandDepths { first: row * columns, tiles, later, spares })
     }
 
-    /// One row of tiles.
+    /// One row of tiles; see [`Self::bands`].
     pub(crate) fn band(&mut self, row: usize) -> BandDepths<'_> {
+        self.is_later_all = false;
         let tiles: Range<usize> = row * self.columns..(row + 1) * self.columns;
-        let values = tiles.start * TILE * TILE..tiles.end * TILE * TILE;
-        BandDepths { tiles: &mut self.tiles[tiles], values: &mut self.values[values] }
+        let first = tiles.start;
+        BandDepths { first, tiles: &mut self.tiles[tiles], later: &self.later, spares: &self.spares }
     }
 }
 
 /// Depths of a row of tiles.
 pub(crate) struct BandDepths<'a> {
-    pub(crate) tiles: &'a mut [TileForms],
-    values: &'a mut [f32],
+    /// Number of the first tile.
+    first: usize,
+    tiles: &'a mut [OnceLock<Box<TileForms>>],
+    later: &'a Later,
+    spares: &'a Spares,
 }
 
 impl BandDepths<'_> {
-    /// Values of a block of a tile.
-    pub(crate) fn values(&self, tile: usize, block: usize) -> &[f32; 64] {
-        let values = &self.values[tile * TILE * TILE + block * 64..];
-        values.first_chunk().unwrap_or(&[0.0; 64])
+    /// Takes a tile out to be drawn to. What it held is of no account if it `is_cleared`.
+    pub(crate) fn take(&mut self, column: usize, is_cleared: bool) -> Box<TileForms> {
+        self.tiles[column].take().unwrap_or_else(|| {
+            let spare = lock(self.spares).pop().unwrap_or_default();
+            if is_cleared { spare } else { self.later.draw_tile(self.first + column, spare) }
+        })
     }
 
-    /// Keeps values of a block of a tile.
-    pub(crate) fn set_values(&mut self, tile: usize, block: usize, from: &Block<f32>) {
-        self.values[tile * TILE * TILE + block * 64..][..64].copy_from_slice(from.as_flattened());
+    /// Puts a tile back.
+    pub(crate) fn put(&mut self, column: usize, tile: Box<TileForms>) {
+        self.tiles[column] = OnceLock::from(tile);
     }
 }

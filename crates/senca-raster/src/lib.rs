@@ -53,6 +53,7 @@ mod cover;
 pub mod cube;
 mod depth;
 mod filled;
+mod later;
 mod lines;
 mod multisample;
 mod pixel;

@@ -4,7 +4,7 @@
 use crate::api::{Compare, LANES};
 use crate::block_depths::BlockDepths;
 use crate::texture::Filter;
-use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 
 /// A shadow map, and where its coordinates are. Outside the map its rim counts.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +85,9 @@ impl ShadowUnit<'_> {
         let reference = held_lanes(r * per_q, zero, one);
         let x = PlaceLanes::new(simd, s * per_q, self.depths.width(), self.filter);
         let y = PlaceLanes::new(simd, t * per_q, self.depths.height(), self.filter);
+        if self.is_lit(simd, reference, &x, &y, mask) {
+            return one;
+        }
         let mut depths = [[0.0; LANES]; 4];
         if self.filter == Filter::Nearest {
             let (x, y) = (x.low.to_array(), y.low.to_array());
@@ -98,6 +101,28 @@ impl ShadowUnit<'_> {
         let second =
             mixed(self.lit(simd, reference, &depths[2]), self.lit(simd, reference, &depths[3]), x.share);
         mixed(first, second, y.share)
+    }
+
+    /// Whether the lanes of `mask` are in full light by what is known without looking at any depth.
+    #[inline(always)]
+    fn is_lit<S: Simd>(
+        &self,
+        simd: S,
+        reference: f32x16<S>,
+        x: &PlaceLanes<S>,
+        y: &PlaceLanes<S>,
+        mask: u16,
+    ) -> bool {
+        let greatest = match self.compare {
+            Compare::Less | Compare::LessEqual => false,
+            Compare::Greater | Compare::GreaterEqual => true,
+            _ => return false,
+        };
+        let keep = mask32x16::from_bitmask(simd, u64::from(mask));
+        let (columns, rows) = (x.ends(simd, keep), y.ends(simd, keep));
+        let Some(bound) = self.depths.bound(columns, rows, greatest) else { return false };
+        let passes = crate::cover::compare(simd, self.compare, reference, f32x16::splat(simd, bound));
+        passes.to_bitmask() as u16 & mask == mask
     }
 
     #[inline(always)]
@@ -139,5 +164,13 @@ impl<S: Simd> PlaceLanes<S> {
         let low = (at - half).floor();
         let high = held_lanes(low + splat(1.0), splat(0.0), splat(size as f32 - 1.0));
         Self { low: low.to_int(), high: high.to_int(), share: (at - half) - low }
+    }
+
+    /// The first and the last texel of the lanes in `keep`; the last before the first if there are none.
+    #[inline(always)]
+    fn ends(&self, simd: S, keep: mask32x16<S>) -> [i32; 2] {
+        let low = keep.select(self.low, i32x16::splat(simd, i32::MAX));
+        let high = keep.select(self.high, i32x16::splat(simd, -1));
+        [low.reduce_min(), high.reduce_max()]
     }
 }

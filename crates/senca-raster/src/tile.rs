@@ -40,7 +40,9 @@ pub(crate) struct Band<'a> {
     pub(crate) height: usize,
     pub(crate) color: Option<ColorPlane<'a>>,
     pub(crate) depth: Option<&'a mut [f32]>,
-    /// Depths kept in blocks, instead.
+    /// Whether depths are kept in blocks, instead. That of the tile being drawn is in its [`TileBuffer`].
+    pub(crate) in_blocks: bool,
+    /// The tiles of such.
     pub(crate) blocks: Option<BandDepths<'a>>,
     pub(crate) stencil: Option<&'a mut [u8]>,
     pub(crate) ids: Option<&'a mut [u32]>,
@@ -56,6 +58,7 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
         None => Vec::new(),
     };
     let mut depths = target.depth.as_deref_mut().map(|p| p.chunks_mut(step));
+    let in_blocks = target.blocks.is_some();
     let mut blocks = target.blocks.as_deref_mut().map(|p| p.bands());
     let mut stencils = target.stencil.as_deref_mut().map(|p| p.chunks_mut(step));
     let mut ids = target.ids.as_deref_mut().map(|p| p.chunks_mut(step));
@@ -66,6 +69,7 @@ pub(crate) fn bands<'a>(target: &'a mut Target<'_>) -> Vec<Band<'a>> {
             height: TILE.min(height - row * TILE),
             color: colors.get_mut(row).and_then(Option::take),
             depth: depths.as_mut().and_then(Iterator::next),
+            in_blocks,
             blocks: blocks.as_mut().and_then(Iterator::next),
             stencil: stencils.as_mut().and_then(Iterator::next),
             ids: ids.as_mut().and_then(Iterator::next),
@@ -87,6 +91,7 @@ pub(crate) fn band<'a>(target: &'a mut Target<'_>, row: usize) -> Band<'a> {
             ColorPlane::Rgba8(p) => ColorPlane::Rgba8(&mut p[range.clone()]),
         }),
         depth: target.depth.as_deref_mut().map(|p| &mut p[range.clone()]),
+        in_blocks: target.blocks.is_some(),
         blocks: target.blocks.as_deref_mut().map(|p| p.band(row)),
         stencil: target.stencil.as_deref_mut().map(|p| &mut p[range.clone()]),
         ids: target.ids.as_deref_mut().map(|p| &mut p[range]),
@@ -99,6 +104,30 @@ pub(crate) enum ColorFormat {
     None,
     Rgba8,
     Rgba32F,
+}
+
+/// What a target has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Planes {
+    pub(crate) format: ColorFormat,
+    pub(crate) has_depth: bool,
+    pub(crate) has_stencil: bool,
+    pub(crate) has_ids: bool,
+}
+
+impl Planes {
+    /// Depths alone.
+    pub(crate) const DEPTHS: Self =
+        Self { format: ColorFormat::None, has_depth: true, has_stencil: false, has_ids: false };
+
+    pub(crate) fn of(target: &Target<'_>) -> Self {
+        Self {
+            format: ColorFormat::of(target),
+            has_depth: target.has_depth(),
+            has_stencil: target.stencil.is_some(),
+            has_ids: target.ids.is_some(),
+        }
+    }
 }
 
 impl ColorFormat {
@@ -173,7 +202,7 @@ pub(crate) struct TileBuffer {
     pub(crate) level: u64,
     /// Those of them whose depths are to be found in `forms`.
     pub(crate) formed: u64,
-    /// Where the target keeps depths in blocks: what it has of this tile, once a block is present.
+    /// Where the target keeps depths in blocks: this tile of them.
     pub(crate) forms: Box<TileForms>,
 }
 
@@ -197,7 +226,7 @@ impl Default for TileBuffer {
 }
 
 /// The blocks whose bits are set.
-fn blocks_of(bits: u64) -> impl Iterator<Item = usize> {
+pub(crate) fn blocks_of(bits: u64) -> impl Iterator<Item = usize> {
     (0..BLOCKS * BLOCKS).filter(move |block| bits >> block & 1 == 1)
 }
 
@@ -232,8 +261,8 @@ impl TileBuffer {
     #[inline(always)]
     fn fetch_block(&mut self, band: &Band<'_>, tile_x: usize, block: usize, touches: &Touches) {
         let clear = touches.clear.filter(|_| self.cleared >> block & 1 == 1);
-        if self.present == 0 {
-            self.open_forms(band, tile_x / TILE, touches);
+        if band.in_blocks && self.present == 0 {
+            self.open_forms(touches);
         }
         if self.present >> block & 1 == 1 {
             return;
@@ -258,9 +287,8 @@ impl TileBuffer {
                 None => farthest_of(&self.depth[block], touches.reversed),
             };
         }
-        if let Some(depths) = &band.blocks {
-            let from = depths.values(tile_x / TILE, block);
-            self.depth[block].as_flattened_mut().copy_from_slice(from);
+        if band.in_blocks {
+            self.depth[block] = *self.forms.values_of(block);
             self.farthest[block] = farthest_of(&self.depth[block], touches.reversed);
         }
         if let Some(plane) = &band.stencil {
@@ -284,8 +312,7 @@ impl TileBuffer {
     }
 
     /// Where the target keeps depths in blocks: brings in all blocks of a tile but those that are kept as values.
-    fn open_forms(&mut self, band: &Band<'_>, tile: usize, touches: &Touches) {
-        let Some(depths) = &band.blocks else { return };
+    fn open_forms(&mut self, touches: &Touches) {
         match touches.clear.and_then(|clear| clear.depth) {
             Some(depth) => {
                 self.forms.clear(depth);
@@ -293,7 +320,6 @@ impl TileBuffer {
                 (self.present, self.level) = (u64::MAX, u64::MAX);
             }
             None => {
-                self.forms.copy_from(&depths.tiles[tile]);
                 self.present = !self.forms.valued;
                 for block in blocks_of(self.present) {
                     self.farthest[block] = self.forms.farthest(block, touches.reversed);
@@ -448,8 +474,11 @@ impl TileBuffer {
         if let Some(p) = band.depth.as_mut().filter(|_| touches.depth || depth.is_some()) {
             rows.store(p, depth, |block, row| eight(&self.depth[block % COUNT], row, |v| v));
         }
-        if let Some(depths) = &mut band.blocks {
-            self.store_forms(depths, tile_x / TILE, depth.filter(|_| seen == 0), present & !formed);
+        if band.in_blocks {
+            match depth.filter(|_| seen == 0) {
+                Some(depth) => self.forms.clear(depth),
+                None => self.forms.keep(present & !formed, &self.depth),
+            }
         }
         let stencil = clear.and_then(|c| c.stencil);
         if let Some(p) = band.stencil.as_mut().filter(|_| touches.stencil || stencil.is_some()) {
@@ -458,19 +487,6 @@ impl TileBuffer {
         if let Some(p) = &mut band.ids {
             rows.store(p, clear.and_then(|c| c.id), |block, row| eight(&self.ids[block % COUNT], row, |v| v));
         }
-    }
-}
-
-impl TileBuffer {
-    /// Takes depths back to a target that keeps them in blocks: those of the blocks in `valued` as values. With
-    /// `clear` no block was brought in.
-    fn store_forms(&mut self, to: &mut BandDepths<'_>, tile: usize, clear: Option<f32>, valued: u64) {
-        if let Some(depth) = clear {
-            return to.tiles[tile].clear(depth);
-        }
-        self.forms.valued |= valued;
-        to.tiles[tile].copy_from(&self.forms);
-        blocks_of(valued).for_each(|block| to.set_values(tile, block, &self.depth[block]));
     }
 }
 

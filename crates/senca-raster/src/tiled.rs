@@ -15,7 +15,7 @@ use crate::setup::{Bounds, ScreenMap, ScreenVertex, SetupState};
 use crate::stage::{StageNeeds, stage_of};
 use crate::target::{Clear, Target};
 use crate::textured::TextureQueue;
-use crate::tile::{Band, ColorFormat, TileBuffer, Touches, band, bands};
+use crate::tile::{Band, ColorFormat, Planes, TileBuffer, Touches, band, bands};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Mutex;
 
@@ -53,7 +53,7 @@ pub struct Draw<'a> {
 
 /// Triangles of a draw, projected and sorted into tiles. Memory that is used again.
 #[derive(Debug, Default)]
-struct Sorted {
+pub(crate) struct Sorted {
     vertices: Vec<ScreenVertex>,
     /// Number of the first of them.
     first_vertex: usize,
@@ -110,6 +110,37 @@ impl TiledRasterizer {
         counters
     }
 
+    /// Does what [`Self::draw_depths`] does, but tile by tile when somebody looks at one, if the first draw and no
+    /// other clears: much of a shadow map is never looked at, or need not be, as its bounds tell enough.
+    ///
+    /// Looking at depths takes its time then, on the threads that do. Memory is held for the triangles until depths are
+    /// cleared again.
+    pub fn draw_depths_when_read(&mut self, depths: &mut BlockDepths, draws: &[(Primitives<'_>, State)]) {
+        let cleared = draws.first().and_then(|(_, state)| state.clear?.depth);
+        let Some(clear) = cleared.filter(|_| draws[1..].iter().all(|(_, state)| state.clear.is_none()))
+        else {
+            self.draw_depths(depths, draws);
+            return;
+        };
+        let size = [depths.width(), depths.height()];
+        let tiles = size.map(|n| (n as usize).div_ceil(TILE));
+        let draws = depths_alone(draws);
+        let maps: Vec<_> = draws.iter().map(|draw| ScreenMap::new(size[0], size[1], &draw.state)).collect();
+        let later = depths.begin_later();
+        // Memory of the draws before is used again.
+        self.sorted.splice(..0, later.take_sorted());
+        self.sorted.resize_with(self.sorted.len().max(draws.len()), Sorted::default);
+        self.sort(&draws, &maps, tiles);
+        let states = draws.iter().map(|draw| draw.state);
+        let drawn = states.zip(maps).zip(self.sorted.drain(..draws.len()));
+        later.begin(
+            self.settings.level,
+            clear,
+            size,
+            drawn.map(|((state, map), sorted)| (state, map, sorted)),
+        );
+    }
+
     /// Draws triangles that write depths and nothing else into depths kept in blocks: shadow maps. Of the states
     /// only what concerns places and depths is heeded: not stencil tests, blending, antialiasing.
     /// Of those that go together only the first clears, as in [`Self::draw_all`]; a scissor does not confine it.
@@ -125,22 +156,7 @@ impl TiledRasterizer {
             ids: None,
         };
         let mut counters = Counters::default();
-        let draws: Vec<Draw<'_>> = draws
-            .iter()
-            .map(|(triangles, state)| Draw {
-                triangles: *triangles,
-                state: State {
-                    clear_area: None,
-                    stencil: None,
-                    blend: None,
-                    antialias: false,
-                    multisample: false,
-                    ..*state
-                },
-                shading: Shading::None,
-            })
-            .collect();
-        for group in draws.chunk_by(|_, b| b.state.clear.is_none()) {
+        for group in depths_alone(draws).chunk_by(|_, b| b.state.clear.is_none()) {
             counters += self.draw_group(&mut target, group);
         }
         counters
@@ -166,13 +182,10 @@ impl TiledRasterizer {
         let mut counters = self.sort(draws, &maps, tiles);
         let mut parts = Vec::with_capacity(draws.len());
         for ((draw, map), sorted) in draws.iter().zip(&maps).zip(&self.sorted) {
-            let mut pass = pass(target, &draw.triangles, &draw.state, &draw.shading, map, clear);
+            let planes = Planes::of(target);
+            let mut pass = pass(planes, &draw.triangles, &draw.state, &draw.shading, map, clear);
             pass.touches.clear_area = clear_area;
-            parts.push(Part {
-                input: sorted.input(draw, map, tiles),
-                runs: &sorted.runs[..sorted.count],
-                pass,
-            });
+            parts.push(sorted.part(&draw.triangles, map, tiles, pass));
         }
         share_touches(&mut parts, target.blocks.is_some());
         let frame = Frame { tiles, clears: clear.is_some(), parts: &parts };
@@ -210,6 +223,23 @@ impl TiledRasterizer {
     }
 }
 
+/// Draws of depths and nothing else.
+fn depths_alone<'a>(draws: &[(Primitives<'a>, State)]) -> Vec<Draw<'a>> {
+    let draw = |(triangles, state): &(Primitives<'a>, State)| Draw {
+        triangles: *triangles,
+        state: State {
+            clear_area: None,
+            stencil: None,
+            blend: None,
+            antialias: false,
+            multisample: false,
+            ..*state
+        },
+        shading: Shading::None,
+    };
+    draws.iter().map(draw).collect()
+}
+
 impl TiledSettings {
     fn threads(&self) -> usize {
         match self.threads {
@@ -244,15 +274,46 @@ impl Sorted {
         self.vertices.capacity() * size_of::<ScreenVertex>() + self.runs.iter().map(Run::bytes).sum::<usize>()
     }
 
-    fn input<'a>(&'a self, draw: &'a Draw<'_>, map: &'a ScreenMap, tiles: [usize; 2]) -> BinInput<'a> {
+    fn input<'a>(
+        &'a self,
+        primitives: &'a Primitives<'a>,
+        state: &State,
+        map: &'a ScreenMap,
+        tiles: [usize; 2],
+    ) -> BinInput<'a> {
         BinInput {
-            primitives: &draw.triangles,
+            primitives,
             vertices: &self.vertices,
             first_vertex: self.first_vertex,
             map,
-            cull: draw.state.cull,
-            interpolation: draw.state.interpolation,
+            cull: state.cull,
+            interpolation: state.interpolation,
             tiles,
+        }
+    }
+
+    /// The draw, ready to be drawn tile by tile.
+    pub(crate) fn part<'a>(
+        &'a self,
+        primitives: &'a Primitives<'a>,
+        map: &'a ScreenMap,
+        tiles: [usize; 2],
+        pass: Pass<'a>,
+    ) -> Part<'a> {
+        Part { input: self.input(primitives, pass.state, map, tiles), runs: self.runs(), pass }
+    }
+
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs[..self.count]
+    }
+
+    /// Depths of the corners of a reference.
+    pub(crate) fn depths(&self, run: &Run, reference: &Reference) -> [f32; 3] {
+        let depth =
+            |i: u32| self.vertices.get((i as usize).wrapping_sub(self.first_vertex)).map_or(0.0, |v| v.z);
+        match reference.piece() {
+            None => reference.corners.map(depth),
+            Some(k) => run.pieces[k].v.map(|v| v.z),
         }
     }
 
@@ -266,7 +327,7 @@ impl Sorted {
         if runs.len() < self.count {
             runs.resize_with(self.count, Run::default);
         }
-        let input = self.input(draw, map, tiles);
+        let input = self.input(&draw.triangles, &draw.state, map, tiles);
         let jobs = runs[..self.count].iter_mut().enumerate();
         let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
             run.fill(&input, k * length..((k + 1) * length).min(count));
@@ -310,15 +371,14 @@ fn has_whole_blocks(area: &Bounds, target: &Target<'_>) -> bool {
 }
 
 /// What the tiles need to know of a draw.
-fn pass<'a>(
-    target: &Target<'_>,
+pub(crate) fn pass<'a>(
+    Planes { format, has_depth, has_stencil, has_ids }: Planes,
     triangles: &Primitives<'_>,
     state: &'a State,
     shading: &'a Shading<'a>,
     map: &'a ScreenMap,
     clear: Option<Clear>,
 ) -> Pass<'a> {
-    let (has_depth, format) = (target.has_depth(), ColorFormat::of(target));
     let color = ColorPath::of(shading, format);
     let stage = stage_of(shading);
     let needs = stage.map(StageNeeds::of).unwrap_or_default();
@@ -329,7 +389,7 @@ fn pass<'a>(
     let tests_depth = reads_depth && !needs.tests_depth;
     let reversed = matches!(state.depth_test, Compare::Greater | Compare::GreaterEqual);
     let ordered = reversed || matches!(state.depth_test, Compare::Less | Compare::LessEqual);
-    let stencil = state.stencil.filter(|_| stage.is_none() && target.stencil.is_some());
+    let stencil = state.stencil.filter(|_| stage.is_none() && has_stencil);
     let hides_farther = tests_depth && ordered && !stencil.is_some_and(|test| test.needs_failures());
     let alpha_test = shading.alpha_test();
     let drops =
@@ -371,7 +431,7 @@ fn pass<'a>(
         stage,
         needs,
         has_depth: tests_depth,
-        has_ids: target.ids.is_some(),
+        has_ids,
         writes_depth: tests_depth && state.depth_write,
         stencil,
         hides_farther,
@@ -383,18 +443,14 @@ fn pass<'a>(
             && stage.is_none()
             && color == ColorPath::None
             && stencil.is_none()
-            && target.ids.is_none(),
+            && !has_ids,
         color,
         texture,
         cube,
         shadow,
         alpha_test,
         waits,
-        waits_only: waits
-            && alpha_test.is_none()
-            && !reads_depth
-            && stencil.is_none()
-            && target.ids.is_none(),
+        waits_only: waits && alpha_test.is_none() && !reads_depth && stencil.is_none() && !has_ids,
         per_pixel,
         texels: texels.collect(),
         slots,
@@ -405,15 +461,15 @@ fn pass<'a>(
 }
 
 /// A draw that tiles are drawn from.
-struct Part<'a> {
+pub(crate) struct Part<'a> {
     input: BinInput<'a>,
     runs: &'a [Run],
-    pass: Pass<'a>,
+    pub(crate) pass: Pass<'a>,
 }
 
 /// Lets each part bring in and take back what any of them touches. Depths `in_blocks` stay planes if all parts
 /// can do with that.
-fn share_touches(parts: &mut [Part<'_>], in_blocks: bool) {
+pub(crate) fn share_touches(parts: &mut [Part<'_>], in_blocks: bool) {
     let keeps_forms = in_blocks && parts.iter().all(|part| part.pass.depth_only);
     let any = |f: fn(&Touches) -> bool| parts.iter().any(|part| f(&part.pass.touches));
     // Around what is cleared blocks are kept as they are, and so must be brought in.
@@ -429,12 +485,12 @@ fn share_touches(parts: &mut [Part<'_>], in_blocks: bool) {
 }
 
 /// Everything the tiles are drawn from.
-struct Frame<'a> {
+pub(crate) struct Frame<'a> {
     /// Tiles in a row, and rows of tiles.
-    tiles: [usize; 2],
-    clears: bool,
+    pub(crate) tiles: [usize; 2],
+    pub(crate) clears: bool,
     /// In order.
-    parts: &'a [Part<'a>],
+    pub(crate) parts: &'a [Part<'a>],
 }
 
 impl Frame<'_> {
@@ -503,25 +559,53 @@ impl Frame<'_> {
     /// Draws a row of tiles.
     fn draw_band(&self, level: Level, band: &mut Band<'_>, scratch: &mut Scratch) -> FragmentCounts {
         let mut counts = FragmentCounts::default();
+        let clear = self.parts.first().and_then(|part| part.pass.touches.clear);
+        let clears_depths = clear.is_some_and(|clear| clear.depth.is_some());
         for column in 0..self.tiles[0] {
-            let tile = band.row * self.tiles[0] + column;
-            let cleared =
-                self.parts.first().map(|part| part.pass.touches.cleared(column * TILE, band.row * TILE));
-            scratch.tile.cleared = cleared.unwrap_or_default();
-            let mut before: Option<&Part<'_>> = None;
-            for part in self.parts {
-                if part.runs.iter().all(|run| run.of_tile(tile).is_empty()) {
-                    continue;
+            let Some(blocks) = &mut band.blocks else {
+                counts = self.draw_tile(level, band, column, scratch, counts);
+                continue;
+            };
+            if self.clears || self.parts_in(band.row * self.tiles[0] + column).next().is_some() {
+                let spare = std::mem::replace(&mut scratch.tile.forms, blocks.take(column, clears_depths));
+                counts = self.draw_tile(level, band, column, scratch, counts);
+                let drawn = std::mem::replace(&mut scratch.tile.forms, spare);
+                if let Some(blocks) = &mut band.blocks {
+                    blocks.put(column, drawn);
                 }
-                if let Some(before) = before {
-                    dispatch!(level, _simd => scratch.tile.pass_on(band, &before.pass, &part.pass));
-                }
-                counts = part.draw(level, tile, band, scratch, counts);
-                before = Some(part);
             }
-            if let Some(last) = before.or(self.parts.first().filter(|_| self.clears)) {
-                dispatch!(level, simd => scratch.tile.store(simd, band, column * TILE, &last.pass.touches));
+        }
+        counts
+    }
+
+    /// The draws that have something in a tile.
+    fn parts_in(&self, tile: usize) -> impl Iterator<Item = &Part<'_>> {
+        self.parts.iter().filter(move |part| part.runs.iter().any(|run| !run.of_tile(tile).is_empty()))
+    }
+
+    /// Draws the tile of a column.
+    pub(crate) fn draw_tile(
+        &self,
+        level: Level,
+        band: &mut Band<'_>,
+        column: usize,
+        scratch: &mut Scratch,
+        mut counts: FragmentCounts,
+    ) -> FragmentCounts {
+        let tile = band.row * self.tiles[0] + column;
+        let cleared =
+            self.parts.first().map(|part| part.pass.touches.cleared(column * TILE, band.row * TILE));
+        scratch.tile.cleared = cleared.unwrap_or_default();
+        let mut before: Option<&Part<'_>> = None;
+        for part in self.parts_in(tile) {
+            if let Some(before) = before {
+                dispatch!(level, _simd => scratch.tile.pass_on(band, &before.pass, &part.pass));
             }
+            counts = part.draw(level, tile, band, scratch, counts);
+            before = Some(part);
+        }
+        if let Some(last) = before.or(self.parts.first().filter(|_| self.clears)) {
+            dispatch!(level, simd => scratch.tile.store(simd, band, column * TILE, &last.pass.touches));
         }
         counts
     }
@@ -686,13 +770,13 @@ fn put<const N: usize>(batch: &mut Batch, lane: usize, values: [&[f32; N]; 3]) {
 
 /// Memory of one thread.
 #[derive(Debug, Default)]
-struct Scratch {
-    tile: TileBuffer,
+pub(crate) struct Scratch {
+    pub(crate) tile: TileBuffer,
     batch: Batch,
     queue: TextureQueue,
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 

@@ -453,26 +453,29 @@ fn scratch_memory_is_bounded() {
     }
 }
 
-/// Depths with flat and uneven parts.
-fn depths_of_a_mesh() -> BlockDepths {
+/// Depths with flat and uneven parts, and some where nothing is: 1, or, if `reversed`, where the greatest is nearest, 0.
+/// They are drawn when somebody looks at them.
+fn depths_of_a_mesh(reversed: bool) -> BlockDepths {
     let mesh = Mesh::random(9, 60);
-    let mut depths = BlockDepths::new(300, 170, 1.0).unwrap();
-    let clear = Clear { depth: Some(1.0), ..Clear::default() };
-    let state = State { clear: Some(clear), ..State::default() };
-    TiledRasterizer::default().draw_depths(&mut depths, &[(mesh.primitives(), state)]);
+    let (far, depth_test) = if reversed { (0.0, Compare::Greater) } else { (1.0, Compare::Less) };
+    let mut depths = BlockDepths::new(300, 170, far).unwrap();
+    let clear = Clear { depth: Some(far), ..Clear::default() };
+    let state = State { clear: Some(clear), depth_test, ..State::default() };
+    TiledRasterizer::default().draw_depths_when_read(&mut depths, &[(mesh.primitives(), state)]);
     depths
 }
 
 /// Colours by vertex, textures, shadow maps and alpha tests, in all combinations.
-fn fixed_shadings<'a>(texture: &'a Texture, depths: &'a BlockDepths) -> Vec<Shading<'a>> {
+fn fixed_shadings<'a>(texture: &'a Texture, depths: &'a [BlockDepths; 2]) -> Vec<Shading<'a>> {
     let unit = TextureUnit { texture, sampler: Sampler::TRILINEAR, coords: 1 };
-    let light = |filter, compare, dims_colors| {
+    let light = |depths, filter, compare, dims_colors| {
         Some(ShadowUnit { depths, coords: 0, compare, filter, dims_colors, dims_alpha: !dims_colors })
     };
+    let [depths, reversed] = depths;
     let shadows = [
         None,
-        light(Filter::Nearest, Compare::LessEqual, true),
-        light(Filter::Linear, Compare::GreaterEqual, false),
+        light(depths, Filter::Nearest, Compare::LessEqual, true),
+        light(reversed, Filter::Linear, Compare::GreaterEqual, false),
     ];
     let tests = [None, Some(AlphaTest { compare: Compare::Greater, reference: 0.4 })];
     let mut shadings = Vec::new();
@@ -490,7 +493,7 @@ fn fixed_shadings<'a>(texture: &'a Texture, depths: &'a BlockDepths) -> Vec<Shad
 fn textures_shadows_and_alpha_tests_agree_on_pixels_of_one_and_of_four_samples() {
     let texel = |i: u32| [i * 37 % 251, i * 91 % 256, i % 16 * 16, 64 + i % 192].map(|v| v as f32 / 255.0);
     let texture = Texture::new(48, 20, Texels::Rgba32F((0..48 * 20).map(texel).collect())).unwrap();
-    let (texture, depths) = (texture.with_mipmaps(), depths_of_a_mesh());
+    let (texture, depths) = (texture.with_mipmaps(), [false, true].map(depths_of_a_mesh));
     let mesh = Mesh::random(12, 150);
     let states = [
         State::default(),
@@ -585,7 +588,7 @@ fn cube_faces(n: u32) -> [Vec<[u8; 4]>; 6] {
 
 #[test]
 fn cubes_agree_and_have_the_colour_of_their_direction() {
-    let (texture, depths) = (cube(), depths_of_a_mesh());
+    let (texture, depths) = (cube(), depths_of_a_mesh(false));
     let mut mesh = Mesh::random(21, 120);
     mesh.varyings.iter_mut().for_each(|v| *v = 2.0 * *v - 1.0);
     for mip in [Mip::None, Mip::Nearest, Mip::Linear] {

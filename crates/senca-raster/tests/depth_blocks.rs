@@ -136,6 +136,63 @@ fn floors_and_all_kinds_of_triangles_have_the_same_depths() {
 }
 
 #[test]
+fn depths_drawn_when_somebody_looks_are_those_drawn_at_once() {
+    let mut r = Random(11);
+    let (floor, things) = (Mesh::floor(&mut r, 6), Mesh::random(&mut r, 120));
+    let size = [257, 131];
+    for (nearer, clear) in [(Compare::Less, 1.0), (Compare::GreaterEqual, 0.0)] {
+        let bias = State { depth_bias: DepthBias { constant: -1e-4, slope: -1.5 }, ..state(nearer, None) };
+        let part = Rect { x: 13, y: 9, width: 90, height: 70 };
+        let draws = [
+            vec![(floor.primitives(), state(nearer, Some(clear))), (things.primitives(), bias)],
+            vec![(things.primitives(), State { scissor: Some(part), ..state(nearer, None) })],
+            vec![(floor.primitives(), state(Compare::Always, None))],
+            vec![(things.primitives(), state(nearer, Some(clear)))],
+            // A clear in the middle: at once.
+            vec![
+                (floor.primitives(), state(nearer, None)),
+                (things.primitives(), state(nearer, Some(clear))),
+            ],
+            vec![(floor.primitives(), state(nearer, Some(0.5)))],
+            vec![(things.primitives(), State { scissor: Some(part), ..state(nearer, Some(clear)) })],
+        ];
+        // Up to each of them, so that tiles wait when the next ones come.
+        for end in 1..=draws.len() {
+            let mut rasterizer = TiledRasterizer::new(TiledSettings { threads: 2, level: SimdLevel::new() });
+            let [mut at_once, mut later] = [0.25; 2].map(|z| BlockDepths::new(size[0], size[1], z).unwrap());
+            for draws in &draws[..end] {
+                rasterizer.draw_depths(&mut at_once, draws);
+                rasterizer.draw_depths_when_read(&mut later, draws);
+                for _ in 0..3 {
+                    let [x, y] = size.map(|n| (n as f32 * r.next()) as u32);
+                    assert_eq!(later.get(x, y), at_once.get(x, y), "{nearer:?}, {end}: {x}, {y}");
+                }
+            }
+            assert!(later.clone().to_rows() == at_once.to_rows(), "{nearer:?}, {end}");
+            assert!(later.to_rows() == at_once.to_rows(), "{nearer:?}, {end}");
+        }
+    }
+}
+
+#[test]
+fn many_threads_look_at_the_same_tiles() {
+    let mut r = Random(5);
+    let things = Mesh::random(&mut r, 300);
+    let (mut rasterizer, mut depths) = (TiledRasterizer::default(), BlockDepths::new(300, 200, 0.0).unwrap());
+    let draws = [(things.primitives(), state(Compare::Less, Some(1.0)))];
+    rasterizer.draw_depths(&mut depths, &draws);
+    let expected = depths.to_rows();
+    for _ in 0..20 {
+        rasterizer.draw_depths_when_read(&mut depths, &draws);
+        let depths = &depths;
+        std::thread::scope(|scope| {
+            let looks = [0, 1, 2, 3].map(|_| scope.spawn(|| depths.to_rows()));
+            assert!(looks.into_iter().all(|look| look.join().unwrap() == expected));
+        });
+    }
+}
+
+#[test]
 fn squares_are_gathered_across_blocks() {
     let mut r = Random(3);
     let (floor, things) = (Mesh::floor(&mut r, 9), Mesh::random(&mut r, 40));

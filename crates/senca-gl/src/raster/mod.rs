@@ -32,8 +32,9 @@ impl Context {
         }
         let rows = if clear.is_some() { 0..u32::MAX } else { rows_of_all(batches) };
         let mut planes = self.framebuffers.take_planes_for(rows);
+        let counts = self.queries.active();
         let (rasterizer, multisample) = (&mut self.rasterizer, first.state.has(Cap::Multisample));
-        if let Some(passed) = draw_depths(rasterizer, &mut planes, batches, clear.as_ref()) {
+        if let Some(passed) = draw_depths(rasterizer, &mut planes, batches, clear.as_ref(), counts) {
             self.framebuffers.put_back(planes);
             return passed;
         }
@@ -154,12 +155,14 @@ fn draw(
 }
 
 /// Draws batches that write depths alone into planes that keep depths in blocks, or may from now on, because
-/// all of them are cleared; returns how many pixels passed. `None`, with nothing done, if that is not so.
+/// all of them are cleared; returns how many pixels passed, if somebody `counts` them. `None`, with nothing done, if
+/// that is not so.
 fn draw_depths(
     rasterizer: &mut TiledRasterizer,
     planes: &mut DrawPlanes,
     batches: &[Batch],
     waiting: Option<&WaitingClear>,
+    counts: bool,
 ) -> Option<u64> {
     let clear = waiting.filter(|waiting| waiting.is_whole).map(|waiting| waiting.values);
     let (has_stencil, has_colors) = (planes.stencil().is_some(), planes.color_count() > 0);
@@ -190,7 +193,11 @@ fn draw_depths(
         };
         draws.push((triangles, state));
     }
-    Some(rasterizer.draw_depths(blocks, &draws).passed)
+    if counts {
+        return Some(rasterizer.draw_depths(blocks, &draws).passed);
+    }
+    rasterizer.draw_depths_when_read(blocks, &draws);
+    Some(0)
 }
 
 /// Whether nothing of a batch is to be seen.
