@@ -9,7 +9,8 @@ fn example() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "-p", "senca-gl", "--example", "opengl"]);
+        // With all of the workspace, so that what the tests of it have built need not be built again for other features.
+        build.args(["build", "--quiet", "--workspace", "--lib", "--example", "opengl"]);
         let release = !cfg!(debug_assertions);
         if release {
             build.arg("--release");

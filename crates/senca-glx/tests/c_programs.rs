@@ -55,7 +55,8 @@ fn windows() {
         return;
     }
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "-p", "senca-glx"]).current_dir(env!("CARGO_MANIFEST_DIR"));
+    // With all of the workspace, so that what the tests of it have built need not be built again for other features.
+    build.args(["build", "--quiet", "--workspace", "--lib", "--example", "opengl"]);
     let release = !cfg!(debug_assertions);
     if release {
         build.arg("--release");
