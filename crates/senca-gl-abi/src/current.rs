@@ -213,20 +213,18 @@ fn put_back(current: Box<Current>) {
     }
 }
 
-/// Gives the thread a context, with its window made ready by `prepare`; `false` when there is no such context,
-/// another thread has it, or `prepare` says so. Then everything is as before.
+/// Gives the thread a context, with its window made ready by `prepare`, which is told whether the thread has the
+/// context already; `false` when there is no such context, another thread has it, or `prepare` says so. Then everything
+/// is as before.
 #[must_use]
-pub fn make_current(handle: usize, prepare: impl FnOnce(&mut Current) -> bool) -> bool {
+pub fn make_current(handle: usize, prepare: impl FnOnce(&mut Current, bool) -> bool) -> bool {
     if handle != 0 && current_handle() == handle {
         let mut done = false;
-        with(|c| {
-            c.present();
-            done = prepare(c);
-        });
+        with(|c| done = prepare(c, true));
         return done;
     }
     let Some(mut next) = take(handle) else { return false };
-    let ready = catch_unwind(AssertUnwindSafe(|| prepare(&mut next))).unwrap_or(false);
+    let ready = catch_unwind(AssertUnwindSafe(|| prepare(&mut next, false))).unwrap_or(false);
     if !ready {
         put_back(next);
         return false;

@@ -141,7 +141,10 @@ fn make_current(display: usize, id: u64, context: usize) -> bool {
         drawable::sweep(x, connection);
     }
     let before = drawable::detach_current();
-    let made = current::make_current(context, |c| {
+    let made = current::make_current(context, |c, is_current| {
+        if is_current {
+            c.present();
+        }
         c.window_and_gl::<GlxWindow>().is_some_and(|(window, gl)| window.attach(gl, key))
     });
     if !made && let Some(before) = before {

@@ -86,19 +86,24 @@ fn attach(handle: usize, buffer: Out<u8>, kind: u32, width: i32, height: i32) ->
     let limit = senca_gl::max_window_side();
     let size = |n: i32| u32::try_from(n).ok().filter(|n| (1..=limit).contains(n));
     let (Some(width), Some(height)) = (size(width), size(height)) else { return false };
-    current::make_current(handle, |c| {
+    current::make_current(handle, |c, is_current| {
         let Some((window, gl)) = picture(c) else { return false };
         let order = window.layout.order;
         let Some(number) = Kind::of(kind, order) else { return false };
+        let layout = Layout { order, kind: number };
         let float = matches!(number, Kind::Short | Kind::Float);
         let changed = (window.width, window.height) != (width, height) || gl.has_float_color() != float;
+        // Nothing is written to memory that stays attached before somebody asks for it.
+        if is_current && (changed || (window.layout, window.buffer) != (layout, buffer.address())) {
+            window.present(gl);
+        }
         if changed {
             gl.set_float_color(float);
             if !gl.resize(width, height) {
                 return false;
             }
         }
-        (window.layout, window.kind) = (Layout { order, kind: number }, kind);
+        (window.layout, window.kind) = (layout, kind);
         (window.buffer, window.width, window.height) = (buffer.address(), width, height);
         window.forget_shown();
         true

@@ -56,6 +56,13 @@ static void rows(void)
     glFinish();
     CHECK(b[0] == 0 && b[16] == 7);
     CHECK(b[4 * 8 * 3] == 255 && b[4 * 8 * 3 + 16] == 7);
+    /* Attached again, the same memory may be new: it gets all rows, but not before they are asked for. */
+    glClear(GL_COLOR_BUFFER_BIT);
+    memset(b, 7, sizeof b);
+    CHECK(OSMesaMakeCurrent(c, b, GL_UNSIGNED_BYTE, 4, 4));
+    CHECK(b[0] == 7 && b[4 * 8 * 3] == 7);
+    glFinish();
+    CHECK(b[0] == 0 && b[4 * 8 * 3] == 255);
     OSMesaDestroyContext(c);
 }
 
