@@ -86,6 +86,8 @@ pub struct Context {
     pub(crate) spare_batches: Vec<Batch>,
     /// To be done before the batches.
     pub(crate) waiting_clear: Option<crate::framebuffer::WaitingClear>,
+    /// What waits to be drawn to another framebuffer than the one that is drawn to.
+    pub(crate) parked: Option<crate::parked::Parked>,
     /// State that drawing depends on may differ from that of the batch.
     pub(crate) raster_changed: bool,
     /// The state that vertices depend on may have changed since [`crate::vertex::Plan`] was made.
@@ -137,6 +139,7 @@ impl Context {
             waiting: Vec::new(),
             spare_batches: Vec::new(),
             waiting_clear: None,
+            parked: None,
             raster_changed: true,
             vertex_changed: true,
             rasterizer: TiledRasterizer::default(),

@@ -45,6 +45,7 @@ mod light_lanes;
 mod lighting;
 mod list;
 mod matrix;
+mod parked;
 pub mod pixel;
 mod pixel_state;
 mod query;

@@ -247,8 +247,20 @@ impl Context {
         self.settle_clear();
     }
 
+    /// Draws what waits to be drawn to the framebuffer that is drawn to now.
+    pub(crate) fn flush_bound(&mut self) {
+        self.draw_bound();
+        self.settle_clear();
+    }
+
     /// Draws all primitives that wait. A clear goes on waiting if there are none.
     pub(crate) fn draw_gathered(&mut self) {
+        self.draw_parked();
+        self.draw_bound();
+    }
+
+    /// The same of the framebuffer that is drawn to now.
+    fn draw_bound(&mut self) {
         self.set_aside();
         self.draw_waiting();
         self.reuse_memory();
@@ -256,7 +268,7 @@ impl Context {
 
     /// Puts what has been gathered to what waits to be drawn, and begins anew with the same state. Batches that
     /// are drawn together pass through the framebuffer's memory once.
-    fn set_aside(&mut self) {
+    pub(crate) fn set_aside(&mut self) {
         if self.batch.indices.is_empty() {
             self.batch.clear();
             return;
@@ -284,7 +296,7 @@ impl Context {
     }
 
     /// Draws the batches that wait. A clear goes on waiting if there are none.
-    fn draw_waiting(&mut self) {
+    pub(crate) fn draw_waiting(&mut self) {
         let mut batches = std::mem::take(&mut self.waiting);
         for group in batches.chunk_by(Batch::goes_along) {
             let passed = self.draw_batches(group);

@@ -56,6 +56,10 @@ impl Attachment {
         matches!(self, Self::None)
     }
 
+    pub(crate) fn is_texture(&self) -> bool {
+        matches!(self, Self::Texture(_))
+    }
+
     /// Name of the renderbuffer or texture, 0 for none.
     pub(crate) fn name(&self) -> u32 {
         match self {

@@ -9,7 +9,10 @@ impl Context {
     /// `glDrawBuffer`.
     pub fn draw_buffer(&mut self, buffer: Enum) {
         self.submit(move |c| {
-            c.flush_batch();
+            if c.framebuffers.draw_buffer() == buffer {
+                return;
+            }
+            c.flush_bound();
             let result = c.framebuffers.set_draw_buffer(buffer);
             c.check(result);
             c.touch_raster();

@@ -108,10 +108,16 @@ impl Context {
 
     /// Draws what waits, and lets go of textures that may be written to because they are drawn to.
     pub(crate) fn settle_planes(&mut self) {
-        if self.framebuffers.draw == 0 {
-            self.flush_batch();
-        } else {
-            self.release_textures();
+        self.draw_parked();
+        self.settle_bound_planes();
+    }
+
+    /// The same of the framebuffer that is drawn to now.
+    fn settle_bound_planes(&mut self) {
+        self.flush_bound();
+        if self.framebuffers.draw != 0 {
+            self.batch.state.units.clear();
+            self.touch_raster();
         }
     }
 
@@ -128,7 +134,7 @@ impl Context {
                 }
             }
         }
-        self.settle_planes();
+        self.settle_bound_planes();
         if let Some(clear) = self.whole_clear(mask) {
             self.waiting_clear = Some(clear);
             return;

@@ -226,9 +226,8 @@ impl Context {
             }
             self.framebuffers.objects.get_or_insert(name, FramebufferObject::default);
         }
-        self.flush_batch();
         if draw {
-            self.framebuffers.draw = name;
+            self.turn_to_framebuffer(name);
         }
         if read {
             self.framebuffers.read = name;

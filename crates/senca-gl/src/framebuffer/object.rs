@@ -52,6 +52,11 @@ impl FramebufferObject {
         }
     }
 
+    /// Everything that is attached.
+    pub(crate) fn attachments(&self) -> impl Iterator<Item = &Attachment> {
+        self.points().map(|(_, attachment)| attachment).filter(|attachment| !attachment.is_none())
+    }
+
     pub(crate) fn points(&self) -> impl Iterator<Item = (Point, &Attachment)> {
         let colors = self.colors.iter().enumerate().map(|(i, attachment)| (Point::Color(i), attachment));
         colors.chain([(Point::Depth, &self.depth), (Point::Stencil, &self.stencil)])

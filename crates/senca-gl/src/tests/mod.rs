@@ -265,6 +265,7 @@ fn a_lit_vertex_has_the_colour_of_the_formula() {
     assert_eq!(pixel(&mut c, 4, 1, 1), [181, 149, 117, 255]);
 }
 
+mod parked;
 mod samples;
 mod shadow_map;
 
