@@ -65,6 +65,8 @@ pub(crate) struct Run {
     references: Vec<Reference>,
     /// Where the group of each tile begins; one more at the end.
     starts: Vec<u32>,
+    /// Least and greatest depth of the corners in each tile, if they are wanted; without any the least is greater.
+    depths: Vec<[f32; 2]>,
     /// Reference and the tiles its bounding box meets: first and last column and row.
     boxes: Vec<(Reference, [u16; 4])>,
     pub(crate) pieces: Vec<Piece>,
@@ -84,6 +86,8 @@ pub(crate) struct BinInput<'a> {
     pub(crate) interpolation: Interpolation,
     /// Tiles in a row, and rows of tiles.
     pub(crate) tiles: [usize; 2],
+    /// Whether [`Run::depths_of_tile`] will be asked.
+    pub(crate) wants_depths: bool,
 }
 
 impl BinInput<'_> {
@@ -109,6 +113,11 @@ impl Run {
         }
     }
 
+    /// Least and greatest depth of the corners of a tile's triangles, without bias; `None` without triangles.
+    pub(crate) fn depths_of_tile(&self, tile: usize) -> Option<[f32; 2]> {
+        self.depths.get(tile).copied().filter(|[least, greatest]| least <= greatest)
+    }
+
     /// How many references a row of tiles has.
     pub(crate) fn work(&self, tiles: std::ops::Range<usize>) -> u64 {
         match (self.starts.get(tiles.start), self.starts.get(tiles.end)) {
@@ -126,6 +135,7 @@ impl Run {
     pub(crate) fn bytes(&self) -> usize {
         self.references.capacity() * size_of::<Reference>()
             + self.starts.capacity() * size_of::<u32>()
+            + self.depths.capacity() * size_of::<[f32; 2]>()
             + self.boxes.capacity() * size_of::<(Reference, [u16; 4])>()
             + self.pieces.capacity() * size_of::<Piece>()
             + self.piece_varyings.capacity() * size_of::<f32>()
@@ -139,7 +149,12 @@ impl Run {
         self.piece_varyings.clear();
         self.counters = Counters::default();
         self.starts.clear();
-        self.starts.resize(input.tiles[0] * input.tiles[1] + 1, 0);
+        let tiles = input.tiles[0] * input.tiles[1];
+        self.starts.resize(tiles + 1, 0);
+        self.depths.clear();
+        if input.wants_depths {
+            self.depths.resize(tiles, [f32::INFINITY, f32::NEG_INFINITY]);
+        }
         for first in range.clone().step_by(LANES) {
             let some = first..(first + LANES).min(range.end);
             touch(input, some.clone());
@@ -185,8 +200,23 @@ impl Run {
                 self.starts[row + x as usize + 1] += 1;
             }
         }
+        if input.wants_depths {
+            self.add_depths(input.tiles[0], tiles, v.map(|v| v.z));
+        }
         self.boxes.push((reference, tiles));
         true
+    }
+
+    /// Notes the depths of a triangle's corners in the tiles from first to last column and row.
+    #[inline(always)]
+    fn add_depths(&mut self, columns: usize, [x0, y0, x1, y1]: [u16; 4], [a, b, c]: [f32; 3]) {
+        let (least, greatest) = (a.min(b).min(c), a.max(b).max(c));
+        for y in y0..=y1 {
+            let row = y as usize * columns;
+            for [low, high] in &mut self.depths[row + x0 as usize..=row + x1 as usize] {
+                (*low, *high) = (low.min(least), high.max(greatest));
+            }
+        }
     }
 
     #[cold]

@@ -309,13 +309,20 @@ impl BlockDepths {
     /// A tile; drawn now if it has not been yet.
     #[inline(always)]
     fn tile(&self, k: usize) -> Option<&TileForms> {
-        self.tiles.get(k).map(|tile| &**tile.get_or_init(|| self.draw_tile(k)))
+        let tile = self.tiles.get(k)?;
+        match tile.get() {
+            Some(forms) => Some(forms),
+            None => Some(self.draw_tile(k, tile)),
+        }
     }
 
     #[cold]
     #[inline(never)]
-    fn draw_tile(&self, k: usize) -> Box<TileForms> {
-        self.later.draw_tile(k, lock(&self.spares).pop().unwrap_or_default())
+    fn draw_tile<'a>(&'a self, k: usize, tile: &'a OnceLock<Box<TileForms>>) -> &'a TileForms {
+        let spare = lock(&self.spares).pop();
+        let drawn = self.later.draw_tile(k, spare.unwrap_or_default());
+        // Another thread may have drawn the same meanwhile: waiting for it would take longer.
+        tile.get_or_init(|| drawn)
     }
 
     /// A depth that none in a rectangle of pixels (first and last, which are in the picture) is greater than, or,

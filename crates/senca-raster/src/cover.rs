@@ -655,7 +655,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             if self.pass.alpha_test.is_none() {
                 self.counts.passed += u64::from(bits.count_ones());
             }
-            self.wait(simd, Waiting { place, offset, bits, samples: [0; 4] });
+            self.wait(simd, Waiting { place, offset, bits, samples: [0; 4], moves_depths: true });
             return pass;
         }
         let mut keep = pass;

@@ -18,6 +18,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// In place of bounds that have not been found yet: no numbers.
 const UNKNOWN: u64 = u64::MAX;
 
+/// Memory of threads that draw a tile: boxes, as it is taken and put back for each.
+type Scratches = Vec<Box<Scratch>>;
+
 /// Draws that have been sorted into tiles and wait, and the depth that all tiles are cleared to first.
 #[derive(Debug)]
 pub(crate) struct Later {
@@ -29,7 +32,7 @@ pub(crate) struct Later {
     /// Least and greatest depth of each tile, or a wider range; [`UNKNOWN`] until asked for. Without draws none are
     /// kept.
     bounds: Vec<AtomicU64>,
-    scratch: Mutex<Vec<Scratch>>,
+    scratch: Mutex<Scratches>,
 }
 
 /// A draw.
@@ -99,11 +102,9 @@ impl Later {
             // What slopes add is not known here, but for its sign. Rounding keeps order.
             let add = |z: f32| (z + setup.bias_constant).clamp(0.0, 1.0);
             for run in draw.sorted.runs() {
-                for reference in run.of_tile(tile) {
-                    let [a, b, c] = draw.sorted.depths(run, reference);
-                    low = low.min(if setup.bias_slope >= 0.0 { add(a.min(b).min(c)) } else { 0.0 });
-                    high = high.max(if setup.bias_slope <= 0.0 { add(a.max(b).max(c)) } else { 1.0 });
-                }
+                let Some([least, greatest]) = run.depths_of_tile(tile) else { continue };
+                low = low.min(if setup.bias_slope >= 0.0 { add(least) } else { 0.0 });
+                high = high.max(if setup.bias_slope <= 0.0 { add(greatest) } else { 1.0 });
             }
         }
         let bits = u64::from(low.to_bits()) | u64::from(high.to_bits()) << 32;

@@ -86,7 +86,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         full: bool,
     ) {
         let block = (8 * by + bx) as usize % (BLOCKS * BLOCKS);
-        let (mut samples, mut bits) = ([0; PAIRS], 0);
+        let (mut samples, mut bits, mut moved) = ([0; PAIRS], 0, 0);
         for pair in top..=bottom {
             let y = 8 * by + 2 * pair;
             let mut inside = mask32x16::splat(simd, true);
@@ -106,11 +106,16 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             if self.pass.alpha_test.is_none() {
                 self.keep_depth(simd, place, tested.pass, tested.z);
                 self.counts.passed += u64::from(tested.bits.count_ones());
+            } else if self.pass.writes_depth {
+                let stored = f32x16::load_array_ref(simd, &self.buffer.depth[block][pair]);
+                let (stored, z): (i32x16<S>, i32x16<S>) = (stored.bitcast(), tested.z.bitcast());
+                moved |= tested.bits & !(stored.simd_eq(z).to_bitmask() as u16);
             }
         }
         if bits != 0 {
             self.counts.shaded += u64::from(bits.count_ones());
-            self.wait(simd, self.waiting_pixels(lane, block, samples, bits));
+            let waiting = self.waiting_pixels(lane, block, samples, bits);
+            self.wait(simd, Waiting { moves_depths: moved != 0, ..waiting });
         }
     }
 
@@ -127,7 +132,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
         let (x, y) = (b[0][lane] + (block % BLOCKS * 8) as i32, b[1][lane] + (block / BLOCKS * 8) as i32);
         // In the middle of the pixel, between its samples.
         let offset = [x as f32 + 0.5, y as f32 + 0.5];
-        Waiting { place: Place { lane, block, pair: 0 }, offset, bits, samples }
+        Waiting { place: Place { lane, block, pair: 0 }, offset, bits, samples, moves_depths: true }
     }
 
     /// Writes colours of sixteen pixels to those of their `samples` that belong to the pixels in `bits`.

@@ -50,6 +50,8 @@ pub(crate) struct Waiting {
     pub(crate) bits: u16,
     /// Of pixels of several samples those to draw, by row of pixels.
     pub(crate) samples: [u16; 4],
+    /// Whether some of the depths are not those that are stored already.
+    pub(crate) moves_depths: bool,
 }
 
 /// Vectors of the current batch that have no colour yet, in the order they are to be written.
@@ -227,7 +229,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
             for pair in 0..4 {
                 let (place, offset) = (Place { lane, block, pair }, [x, (y + 2 * pair as i32) as f32]);
                 self.queue.waiting[(self.queue.len + pair) % WAITING] =
-                    Waiting { place, offset, bits: u16::MAX, samples: [0; 4] };
+                    Waiting { place, offset, bits: u16::MAX, samples: [0; 4], moves_depths: true };
             }
             self.queue.len += 4;
         }
@@ -426,7 +428,7 @@ impl<const FAST: bool> TileDraw<'_, '_, FAST> {
                 continue;
             }
             self.counts.passed += u64::from(mask.count_ones());
-            if self.pass.writes_depth || self.pass.has_ids {
+            if self.pass.writes_depth && vector.moves_depths || self.pass.has_ids {
                 let place = Place { pair, ..place };
                 let keep = mask32x16::from_bitmask(simd, u64::from(mask));
                 self.keep_depth(simd, place, keep, self.depth_at(simd, place));

@@ -130,7 +130,7 @@ impl TiledRasterizer {
         // Memory of the draws before is used again.
         self.sorted.splice(..0, later.take_sorted());
         self.sorted.resize_with(self.sorted.len().max(draws.len()), Sorted::default);
-        self.sort(&draws, &maps, tiles);
+        self.sort(&draws, &maps, tiles, true);
         let states = draws.iter().map(|draw| draw.state);
         let drawn = states.zip(maps).zip(self.sorted.drain(..draws.len()));
         later.begin(
@@ -179,7 +179,7 @@ impl TiledRasterizer {
         if self.sorted.len() < draws.len() {
             self.sorted.resize_with(draws.len(), Sorted::default);
         }
-        let mut counters = self.sort(draws, &maps, tiles);
+        let mut counters = self.sort(draws, &maps, tiles, false);
         let mut parts = Vec::with_capacity(draws.len());
         for ((draw, map), sorted) in draws.iter().zip(&maps).zip(&self.sorted) {
             let planes = Planes::of(target);
@@ -204,8 +204,14 @@ impl TiledRasterizer {
         counters
     }
 
-    /// Projects the triangles of all draws and sorts them into tiles.
-    fn sort(&mut self, draws: &[Draw<'_>], maps: &[ScreenMap], tiles: [usize; 2]) -> Counters {
+    /// Projects the triangles of all draws and sorts them into tiles; `wants_depths` as [`BinInput::wants_depths`].
+    fn sort(
+        &mut self,
+        draws: &[Draw<'_>],
+        maps: &[ScreenMap],
+        tiles: [usize; 2],
+        wants_depths: bool,
+    ) -> Counters {
         let threads = self.settings.threads();
         let jobs = draws.iter().zip(maps).zip(&mut self.sorted);
         let triangles: usize = draws.iter().map(|draw| draw.triangles.indices.len() / 3).sum();
@@ -213,11 +219,13 @@ impl TiledRasterizer {
         if draws.len() > 1 && triangles >= WORTH_SHARING && triangles / draws.len() < RUN {
             // Several of middling size: each on one thread.
             let fill = |((draw, map), sorted): ((&Draw<'_>, &ScreenMap), &mut Sorted)| {
-                sorted.fill(draw, map, tiles, 1)
+                sorted.fill(draw, map, tiles, wants_depths, 1)
             };
             share(threads, jobs.collect(), fill).into_iter().for_each(|c| counters += c);
         } else {
-            jobs.for_each(|((draw, map), sorted)| counters += sorted.fill(draw, map, tiles, threads));
+            jobs.for_each(|((draw, map), sorted)| {
+                counters += sorted.fill(draw, map, tiles, wants_depths, threads)
+            });
         }
         counters
     }
@@ -289,6 +297,7 @@ impl Sorted {
             cull: state.cull,
             interpolation: state.interpolation,
             tiles,
+            wants_depths: false,
         }
     }
 
@@ -307,18 +316,15 @@ impl Sorted {
         &self.runs[..self.count]
     }
 
-    /// Depths of the corners of a reference.
-    pub(crate) fn depths(&self, run: &Run, reference: &Reference) -> [f32; 3] {
-        let depth =
-            |i: u32| self.vertices.get((i as usize).wrapping_sub(self.first_vertex)).map_or(0.0, |v| v.z);
-        match reference.piece() {
-            None => reference.corners.map(depth),
-            Some(k) => run.pieces[k].v.map(|v| v.z),
-        }
-    }
-
     /// Projects the triangles of a draw and sorts them into tiles, on `threads` threads.
-    fn fill(&mut self, draw: &Draw<'_>, map: &ScreenMap, tiles: [usize; 2], threads: usize) -> Counters {
+    fn fill(
+        &mut self,
+        draw: &Draw<'_>,
+        map: &ScreenMap,
+        tiles: [usize; 2],
+        wants_depths: bool,
+        threads: usize,
+    ) -> Counters {
         self.project(&draw.triangles, map, threads);
         let count = draw.triangles.indices.len() / 3;
         let length = run_length(tiles);
@@ -328,6 +334,7 @@ impl Sorted {
             runs.resize_with(self.count, Run::default);
         }
         let input = self.input(&draw.triangles, &draw.state, map, tiles);
+        let input = BinInput { wants_depths, ..input };
         let jobs = runs[..self.count].iter_mut().enumerate();
         let filled = share(threads, jobs.collect(), |(k, run): (usize, &mut Run)| {
             run.fill(&input, k * length..((k + 1) * length).min(count));
