@@ -127,6 +127,7 @@ pub fn with<R: Answer>(command: impl FnOnce(&mut Current) -> R) -> R {
 /// Makes a context that shares with another; 0 when there is no such other.
 #[must_use]
 pub fn create(config: Config, window: Box<dyn Window>, share: usize) -> usize {
+    crate::pool::join();
     let mut register = register();
     let group = match (share, register.contexts.get(&share)) {
         (0, _) => ShareGroup::default(),

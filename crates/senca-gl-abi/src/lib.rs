@@ -16,6 +16,7 @@ mod table;
 mod commands;
 pub mod current;
 pub mod memory;
+mod pool;
 
 #[cfg(test)]
 mod tests;
