@@ -88,19 +88,55 @@ impl ShadowUnit<'_> {
         if self.is_lit(simd, reference, &x, &y, mask) {
             return one;
         }
-        let mut depths = [[0.0; LANES]; 4];
-        if self.filter == Filter::Nearest {
-            let (x, y) = (x.low.to_array(), y.low.to_array());
-            self.depths.gather(simd, mask, [&x, &x], [&y, &y], &mut depths[..1]);
-            return self.lit(simd, reference, &depths[0]);
-        }
         let (columns, rows) = ([x.low.to_array(), x.high.to_array()], [y.low.to_array(), y.high.to_array()]);
-        self.depths.gather(simd, mask, columns.each_ref(), rows.each_ref(), &mut depths);
-        let first =
-            mixed(self.lit(simd, reference, &depths[0]), self.lit(simd, reference, &depths[1]), x.share);
-        let second =
-            mixed(self.lit(simd, reference, &depths[2]), self.lit(simd, reference, &depths[3]), x.share);
-        mixed(first, second, y.share)
+        let (columns, rows) = (columns.each_ref(), rows.each_ref());
+        let mask = self.in_doubt(&reference.to_array(), columns, rows, mask);
+        let mut depths = [[0.0; LANES]; 4];
+        let light = if self.filter == Filter::Nearest {
+            self.depths.gather(simd, mask, columns, rows, &mut depths[..1]);
+            self.lit(simd, reference, &depths[0])
+        } else {
+            self.depths.gather(simd, mask, columns, rows, &mut depths);
+            let first =
+                mixed(self.lit(simd, reference, &depths[0]), self.lit(simd, reference, &depths[1]), x.share);
+            let second =
+                mixed(self.lit(simd, reference, &depths[2]), self.lit(simd, reference, &depths[3]), x.share);
+            mixed(first, second, y.share)
+        };
+        mask32x16::from_bitmask(simd, u64::from(mask)).select(light, one)
+    }
+
+    /// Those lanes of `mask` of which it is not known without looking at depths that they are in full light. Places of
+    /// one vector may be far apart.
+    // Not to be inlined into vector code, which would take each number out of its register.
+    #[inline(never)]
+    fn in_doubt(
+        &self,
+        reference: &[f32; LANES],
+        [x0, x1]: [&[i32; LANES]; 2],
+        [y0, y1]: [&[i32; LANES]; 2],
+        mask: u16,
+    ) -> u16 {
+        let Some(greatest) = self.wants_greatest() else { return mask };
+        let (mut doubt, mut left) = (mask, mask);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % LANES;
+            left &= left - 1;
+            let bound = self.depths.bound([x0[lane], x1[lane]], [y0[lane], y1[lane]], greatest);
+            let is_lit = bound.is_some_and(|bound| self.compare.passes(reference[lane], bound));
+            doubt &= !(u16::from(is_lit) << lane);
+        }
+        doubt
+    }
+
+    /// Whether what passes against the greatest of some depths passes against all of them, or what passes against the
+    /// least; `None` if neither is so.
+    fn wants_greatest(&self) -> Option<bool> {
+        match self.compare {
+            Compare::Less | Compare::LessEqual => Some(false),
+            Compare::Greater | Compare::GreaterEqual => Some(true),
+            _ => None,
+        }
     }
 
     /// Whether the lanes of `mask` are in full light by what is known without looking at any depth.
@@ -113,11 +149,7 @@ impl ShadowUnit<'_> {
         y: &PlaceLanes<S>,
         mask: u16,
     ) -> bool {
-        let greatest = match self.compare {
-            Compare::Less | Compare::LessEqual => false,
-            Compare::Greater | Compare::GreaterEqual => true,
-            _ => return false,
-        };
+        let Some(greatest) = self.wants_greatest() else { return false };
         let keep = mask32x16::from_bitmask(simd, u64::from(mask));
         let (columns, rows) = (x.ends(simd, keep), y.ends(simd, keep));
         let Some(bound) = self.depths.bound(columns, rows, greatest) else { return false };
